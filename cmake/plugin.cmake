@@ -1,0 +1,21 @@
+# weir_plugin(NAME [LIBRARIES ...]): a plugin library from plugins/NAME and passes/NAME, with its manifest
+# and its shaders beside it.
+set(WEIR_PLUGIN_TEMPLATE ${CMAKE_CURRENT_LIST_DIR}/manifest.json.in)
+function(weir_plugin name)
+  cmake_parse_arguments(arg "" "SOURCE_DIR" "LIBRARIES" ${ARGN})
+  if(NOT arg_SOURCE_DIR)
+    set(arg_SOURCE_DIR ${PROJECT_SOURCE_DIR})
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${arg_SOURCE_DIR}/passes/${name}/*.cpp ${arg_SOURCE_DIR}/plugins/${name}/*.cpp)
+  add_library(weir_plugin_${name} MODULE ${sources})
+  target_link_libraries(weir_plugin_${name} PRIVATE weir::framework weir_options ${arg_LIBRARIES})
+  target_include_directories(weir_plugin_${name} PRIVATE ${arg_SOURCE_DIR}/passes)
+  set_target_properties(weir_plugin_${name} PROPERTIES OUTPUT_NAME weir_${name} CXX_VISIBILITY_PRESET hidden
+                                                       VISIBILITY_INLINES_HIDDEN ON)
+  set(WEIR_PLUGIN_NAME ${name})
+  configure_file(${WEIR_PLUGIN_TEMPLATE} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/weir_${name}.json @ONLY)
+  file(MAKE_DIRECTORY ${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/shaders)
+  if(EXISTS ${arg_SOURCE_DIR}/shaders/${name})
+    file(CREATE_LINK ${arg_SOURCE_DIR}/shaders/${name} ${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/shaders/${name} SYMBOLIC)
+  endif()
+endfunction()
