@@ -1,0 +1,100 @@
+// The scene as a GPU reads it, still plain data: static geometry merged in the world and sorted for the acceleration
+// structure, vertices packed, lights gathered. scene/upload.h only copies this; shaders/common/scene.glsl reads it.
+#pragma once
+
+#include <weir/scene/lights.h>
+#include <weir/scene/scene.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace weir::scene {
+
+/// Vertex attributes besides the position, 16 bytes.
+struct PackedVertex {
+  uint32_t normal = 0;   ///< octahedral, 2 × snorm16
+  uint32_t tangent = 0;  ///< octahedral, snorm16 + snorm15, lowest bit of the upper half set when the bitangent's sign is -1
+  float u = 0.0f, v = 0.0f;
+};
+static_assert(sizeof(PackedVertex) == 16);
+
+/// Indices into positions and vertices, and the material. 16 bytes.
+struct PackedTriangle {
+  uint32_t v[3] = {0, 0, 0};
+  uint32_t material = 0;
+};
+static_assert(sizeof(PackedTriangle) == 16);
+
+/// Material flags in PackedMaterial::flags.
+inline constexpr uint32_t kMaterialMask = 1u << 0;
+inline constexpr uint32_t kMaterialBlend = 1u << 1;
+inline constexpr uint32_t kMaterialDoubleSided = 1u << 2;
+inline constexpr uint32_t kMaterialEmissive = 1u << 3;
+
+/// 64 bytes. Texture fields are indices into PreparedScene::textures, -1: none.
+struct PackedMaterial {
+  glm::vec4 baseColor{1.0f};
+  glm::vec3 emission{0.0f};  ///< nit
+  float alphaCutoff = 0.5f;
+  float metallic = 1.0f, roughness = 1.0f, normalScale = 1.0f;
+  uint32_t flags = 0;
+  int32_t baseColorTexture = -1, metallicRoughnessTexture = -1, normalTexture = -1, emissiveTexture = -1;
+};
+static_assert(sizeof(PackedMaterial) == 64);
+
+/// An image as one slot uses it: the same image in a colour and in a data slot becomes two.
+struct PreparedTexture {
+  int image = -1;  ///< into Scene::images
+  bool srgb = false;
+  Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
+  Filter magFilter = Filter::Linear, minFilter = Filter::Linear;
+};
+
+/// Triangles that share a bottom-level acceleration structure: opaque ones first, then those with an alpha test.
+/// Both ranges are sorted spatially (median split), since a software device builds in input order.
+struct TriangleRange {
+  uint32_t first = 0, opaque = 0, masked = 0;
+};
+
+/// An instance in the top-level structure; range 0 is the merged static geometry with an identity transform.
+/// Triangle t of a hit = range.first + (geometry == 1 ? range.opaque : 0) + primitive.
+struct PreparedInstance {
+  uint32_t range = 0;
+  glm::mat4 toWorld{1.0f};
+  bool flipsWinding = false;  ///< the transform mirrors: front faces are clockwise in object space
+};
+
+struct PreparedScene {
+  std::vector<glm::vec3> positions;
+  std::vector<PackedVertex> vertices;  ///< beside positions
+  std::vector<PackedTriangle> triangles;
+  std::vector<TriangleRange> ranges;        ///< [0] may be empty
+  std::vector<PreparedInstance> instances;  ///< never empty when there are triangles
+  std::vector<PackedMaterial> materials;    ///< the last one is glTF's default material
+  std::vector<PreparedTexture> textures;
+  std::vector<GpuLight> lights;      ///< those that can emit at all, triangles first
+  std::vector<AliasCell> aliasTable;  ///< empty when there are no lights
+  uint32_t triangleLights = 0;        ///< how many of `lights` are triangles
+  Bounds bounds;
+  uint64_t droppedTriangles = 0;  ///< degenerate or not finite
+};
+
+/// Arranges a scene. Static meshes are merged into world space (winding mended under mirroring transforms) except those that
+/// are shared so often that merging would multiply memory; emissive ones are always merged, so that a light's triangle is
+/// unique. Power of a triangle: π · area · luminance of its mean emission (twice that when double-sided); of a point 4π · luminance
+/// of its intensity; a spot by its cone; a directional by the area of the scene's disc.
+PreparedScene prepareScene(const Scene& scene);
+
+/// What `weir scene` prints.
+struct SceneSummary {
+  uint64_t storedTriangles = 0, instancedTriangles = 0, vertices = 0;
+  uint32_t meshes = 0, primitives = 0, instances = 0, materials = 0, maskedMaterials = 0, blendMaterials = 0, textures = 0,
+           images = 0, cameras = 0, animations = 0;
+  uint32_t pointLights = 0, spotLights = 0, directionalLights = 0;
+  uint64_t emissiveTriangles = 0;  ///< of materials with a non-zero emissive factor
+  Bounds bounds;
+};
+SceneSummary summarize(const Scene& scene);
+
+}  // namespace weir::scene

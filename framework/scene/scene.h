@@ -1,0 +1,129 @@
+// A scene as plain data: what scene/import.h reads from glTF, before anything is arranged for a GPU.
+// Units: metres, radians, right-handed, +Y up; candela (point, spot), lux (directional), nit (emission).
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace weir::scene {
+
+/// Decoded texels, 8 bits a channel, RGBA, row 0 at the top.
+struct Image {
+  std::string name;
+  uint32_t width = 0, height = 0;
+  std::vector<uint8_t> rgba;
+};
+
+enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge };
+enum class Filter : uint8_t { Nearest, Linear };
+
+/// An image with its sampler. Whether its colour is sRGB-encoded follows from the slot that uses it.
+struct Texture {
+  int image = -1;
+  Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
+  Filter magFilter = Filter::Linear, minFilter = Filter::Linear;
+};
+
+/// A material's use of a texture; index -1: none.
+struct TextureSlot {
+  int texture = -1;
+  int uvSet = 0;
+  explicit operator bool() const { return texture >= 0; }
+};
+
+enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
+
+/// glTF 2.0 metallic-roughness. Names and meanings are the specification's.
+struct Material {
+  std::string name;
+  glm::vec4 baseColor{1.0f};
+  float metallic = 1.0f;
+  float roughness = 1.0f;
+  /// emissiveFactor times KHR_materials_emissive_strength; radiance in nit, linear Rec.709.
+  glm::vec3 emission{0.0f};
+  float normalScale = 1.0f;
+  TextureSlot baseColorTexture, metallicRoughnessTexture, normalTexture, emissiveTexture;
+  AlphaMode alphaMode = AlphaMode::Opaque;
+  float alphaCutoff = 0.5f;
+  bool doubleSided = false;
+  bool isEmissive() const { return emission.x > 0 || emission.y > 0 || emission.z > 0; }
+};
+
+/// Triangles of one material. Arrays of attributes that the file lacks are empty.
+struct Primitive {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;   ///< unit length
+  std::vector<glm::vec4> tangents;  ///< xyz unit length, w = ±1
+  std::vector<glm::vec2> uv0;
+  std::vector<uint32_t> indices;  ///< three a triangle, each below positions.size()
+  int material = -1;              ///< -1: glTF's default material
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<Primitive> primitives;
+};
+
+/// One use of a mesh in the world; the node hierarchy is already multiplied out.
+struct Instance {
+  int mesh = -1;
+  int node = -1;
+  glm::mat4 toWorld{1.0f};
+};
+
+enum class LightKind : uint8_t { Point, Spot, Directional };
+
+/// KHR_lights_punctual, in the world.
+struct PunctualLight {
+  std::string name;
+  LightKind kind = LightKind::Point;
+  glm::vec3 intensity{0.0f};  ///< colour times intensity: candela, or lux when directional
+  glm::vec3 position{0.0f};
+  glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< the way the light travels, unit length
+  float range = 0.0f;                      ///< metres; 0: unbounded
+  float innerCone = 0.0f, outerCone = 0.785398163f;
+};
+
+struct Camera {
+  std::string name;
+  glm::vec3 eye{0.0f};
+  glm::vec3 forward{0.0f, 0.0f, -1.0f};  ///< unit length
+  glm::vec3 up{0.0f, 1.0f, 0.0f};        ///< unit length, orthogonal to forward
+  float verticalFov = 0.785398163f;      ///< radians
+};
+
+struct Bounds {
+  glm::vec3 low{0.0f}, high{0.0f};
+  bool empty = true;
+  void add(const glm::vec3& p);
+  glm::vec3 centre() const { return (low + high) * 0.5f; }
+  /// Half the diagonal; 0 when empty.
+  float radius() const { return empty ? 0.0f : 0.5f * glm::length(high - low); }
+};
+
+struct Scene {
+  std::string path;  ///< as given by the user
+  std::vector<Image> images;
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<PunctualLight> lights;
+  std::vector<Camera> cameras;
+  std::vector<std::string> warnings;  ///< what the importer left out or mended, once each
+  uint32_t animations = 0;            ///< how many the file has
+};
+
+/// Bounds of all instances, in the world.
+Bounds worldBounds(const Scene& scene);
+
+/// A camera that frames the bounds, looking along -Z from the front, 45° high.
+Camera framingCamera(const Bounds& bounds, float aspect);
+
+/// From `--camera`: the name of one of the scene's cameras, or "ex,ey,ez,tx,ty,tz[,vfov in degrees]".
+/// An empty text takes the scene's first camera, or one that frames it. Throws InputError.
+Camera chooseCamera(const Scene& scene, const std::string& text, float aspect);
+
+}  // namespace weir::scene
