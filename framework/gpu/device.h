@@ -1,0 +1,101 @@
+// The Vulkan device: chosen by the user's word, created with what it has of what passes may need.
+#pragma once
+
+#include <weir/gpu/vulkan.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace weir::gpu {
+
+struct DeviceOptions {
+  std::string choice;       ///< "": the best there is; "cpu"; an index of `listDevices`; or part of a name, ignoring case
+  bool validation = false;  ///< Khronos validation with synchronization checks; InputError where the layer isn't installed
+  bool hideRayTracing = false;  ///< as if the device had none (tests of the raster path)
+  bool hideRayQuery = false, hideRayPipeline = false;
+};
+
+/// What a device offers beyond Weir's minimum.
+struct Capabilities {
+  bool accelerationStructure = false, rayPipeline = false, rayQuery = false;
+  bool graphics = true;            ///< the queue can rasterise
+  uint32_t subgroupSize = 0;
+  float timestampPeriod = 0.0f;    ///< nanoseconds a tick; 0: no timestamps
+  uint32_t shaderGroupHandleSize = 0, shaderGroupHandleAlignment = 0, shaderGroupBaseAlignment = 0;
+  uint32_t minScratchAlignment = 0;
+  uint64_t maxStorageBufferRange = 0;
+  uint32_t maxTextures = 0;        ///< sampled images in one bindless array
+};
+
+struct DeviceInfo {
+  uint32_t index = 0;
+  std::string name, driver;   ///< driver: name and version in words
+  std::string kind;           ///< "discrete", "integrated", "virtual", "cpu", "other"
+  uint32_t apiVersion = 0;
+  std::vector<std::string> missing;  ///< of Weir's minimum; empty: usable
+  Capabilities capabilities;
+};
+
+/// Every Vulkan device of this machine, usable or not. Throws RuntimeError when there is no Vulkan at all.
+std::vector<DeviceInfo> listDevices();
+
+/// A message of the validation layers.
+struct ValidationMessage {
+  bool error = false;
+  std::string id, text;
+};
+
+class Device {
+ public:
+  /// Throws InputError when no device fits `choice` (naming those there are), or the chosen one lacks something (naming what).
+  explicit Device(const DeviceOptions& options);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const DeviceInfo& info() const { return info_; }
+  const Capabilities& capabilities() const { return info_.capabilities; }
+  VkInstance instance() const { return instance_; }
+  VkPhysicalDevice physical() const { return physical_; }
+  VkDevice handle() const { return device_; }
+  VkQueue queue() const { return queue_; }
+  uint32_t queueFamily() const { return queueFamily_; }
+  VmaAllocator allocator() const { return allocator_; }
+  VkPipelineCache pipelineCache() const { return pipelineCache_; }
+
+  /// Gives a Vulkan object its name in captures and messages. No-op without VK_EXT_debug_utils.
+  void name(VkObjectType type, uint64_t handle, const std::string& name) const;
+  void beginLabel(VkCommandBuffer commands, const std::string& name) const;
+  void endLabel(VkCommandBuffer commands) const;
+
+  /// Records with `record`, submits and waits: for loading and tests, never inside a frame.
+  void submitAndWait(const std::function<void(VkCommandBuffer)>& record) const;
+  void waitIdle() const;
+
+  /// Warnings and errors of the validation layers so far (validation on). The caller decides; tests demand none.
+  const std::vector<ValidationMessage>& validationMessages() const;
+  void clearValidationMessages();
+
+ private:
+  struct Messages;
+  DeviceInfo info_;
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  uint32_t queueFamily_ = 0;
+  VmaAllocator allocator_ = VK_NULL_HANDLE;
+  VkPipelineCache pipelineCache_ = VK_NULL_HANDLE;
+  VkCommandPool immediatePool_ = VK_NULL_HANDLE;
+  std::unique_ptr<Messages> messages_;
+};
+
+/// Throws RuntimeError naming the call and the result when it isn't VK_SUCCESS.
+void check(VkResult result, const char* call);
+const char* resultName(VkResult result);
+
+}  // namespace weir::gpu
