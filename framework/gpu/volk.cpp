@@ -1,3 +1,5 @@
-// The one definition of Vulkan's entry points: volk is a single header that carries its implementation.
-#define VOLK_IMPLEMENTATION
+// The one definition of Vulkan's entry points, exported to plugins under the names that weir_vulkan_names.h gives them.
 #include <weir/gpu/vulkan.h>
+
+#define VOLK_DEFAULT_VISIBILITY
+#include <volk.c>
