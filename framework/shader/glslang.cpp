@@ -89,6 +89,15 @@ class Includer final : public glslang::TShader::Includer {
   std::string failure_, words_;
 };
 
+/// Findings of the whole shader (its version, no entry point) come without a place.
+bool hasLineNumber(std::string_view finding) {
+  for (size_t at = finding.find(':'); at != std::string_view::npos; at = finding.find(':', at + 1)) {
+    const size_t end = finding.find_first_not_of("0123456789", at + 1);
+    if (end != std::string_view::npos && end > at + 1 && finding[end] == ':') return true;
+  }
+  return false;
+}
+
 /// "ERROR: file:line: text" becomes "file:line: text"; summaries and warnings are left out.
 std::string findings(const std::string& log, const std::string& name) {
   std::string text;
@@ -100,8 +109,7 @@ std::string findings(const std::string& log, const std::string& name) {
     if (!line.starts_with("ERROR: ") || line.ends_with("No code generated.")) continue;
     line.erase(0, 7);
     while (line.ends_with(' ')) line.pop_back();
-    // What the linker says has no place.
-    if (line.starts_with("Linking ")) line = name + ": " + line;
+    if (!hasLineNumber(line)) line = name + ": " + line;
     text += (text.empty() ? "" : "\n") + line;
   }
   return text.empty() ? fmt::format("{}: glslang failed without saying why: {}", name, log) : text;
@@ -131,7 +139,9 @@ std::vector<uint32_t> compileToSpirv(const CompileRequest& request, Sources& sou
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
 
-  const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | EShMsgSuppressWarnings);
+  // Cascading: all errors, not the first one alone.
+  const auto messages =
+      static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules | EShMsgSuppressWarnings | EShMsgCascadingErrors);
   Includer includer(sources, request.name);
   if (!shader.parse(GetDefaultResources(), 460, ECoreProfile, false, false, messages, includer)) {
     throw CompileError(findings(shader.getInfoLog(), request.name));
