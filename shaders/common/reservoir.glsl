@@ -5,6 +5,7 @@
 
 #include "bsdf.glsl"
 #include "lights.glsl"
+#include "visibility.glsl"
 
 // Set when a shadow ray from the reservoir's own pixel found its sample wholly visible.
 const uint kSeen = 0x80000000u;
@@ -63,7 +64,7 @@ Reservoir finish(Selection s, float confidence) {
   return Reservoir(s.light | (s.seen ? kSeen : 0u), s.place, weight, confidence);
 }
 
-#ifdef WEIR_TRACE
+#ifdef CAN_TRACE
 // Shoots the shadow ray of a reservoir's own sample: a hidden one becomes a null sample (its W · f is zero either way).
 void testVisibility(inout Reservoir r, Surface s) {
   if (isNull(r) || isSeen(r)) return;

@@ -1,18 +1,24 @@
-// Tracing: one interface, two back ends (ray-tracing pipeline, ray query). A pass that declares scene.acceleration calls
+// Tracing: one interface, two back ends (ray-tracing pipeline, ray query). A ray kernel (CAN_TRACE) calls
 //   Hit traceClosest(origin, direction, tMax, key)       nearest surface; BLEND surfaces are there with the probability of their alpha
 //   float traceTransmittance(origin, direction, tMax)    0: blocked, 1: free, between: through BLEND surfaces
-//   bool visible(surface, lightSample…)                  by the segment between two offset points
 // Distances are in units of `direction`.
 #ifndef WEIR_TRACE
 #define WEIR_TRACE
 
 #include "trace_types.glsl"
 
+void countRay() {
+#ifdef COUNT_RAYS
+  atomicAdd(rayCounter.count, 1u);
+#endif
+}
+
 #ifdef TRACE_PIPELINE
 layout(location = 0) rayPayloadEXT HitPayload tracePayload;
 layout(location = 1) rayPayloadEXT float traceThrough;
 
 Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key) {
+  countRay();
   tracePayload.triangle = kNoTriangle;
   tracePayload.key = key;
   traceRayEXT(sceneAcceleration, gl_RayFlagsNoneEXT, 0xffu, 0u, 0u, 0u, origin, 0.0, direction, tMax, 0);
@@ -20,6 +26,7 @@ Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key) {
 }
 
 float traceTransmittance(vec3 origin, vec3 direction, float tMax) {
+  countRay();
   traceThrough = 1.0;
   // Nothing but any-hit touches the payload on the way; an accepted hit ends the ray, and only a miss says so.
   traceRayEXT(sceneAcceleration, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xffu, 1u, 0u, 1u,
@@ -31,6 +38,7 @@ float traceTransmittance(vec3 origin, vec3 direction, float tMax) {
 
 #ifdef TRACE_QUERY
 Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key) {
+  countRay();
   rayQueryEXT query;
   rayQueryInitializeEXT(query, sceneAcceleration, gl_RayFlagsNoneEXT, 0xffu, origin, 0.0, direction, tMax);
   while (rayQueryProceedEXT(query)) {
@@ -50,6 +58,7 @@ Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key) {
 }
 
 float traceTransmittance(vec3 origin, vec3 direction, float tMax) {
+  countRay();
   rayQueryEXT query;
   rayQueryInitializeEXT(query, sceneAcceleration, gl_RayFlagsTerminateOnFirstHitEXT, 0xffu, origin, 0.0, direction, tMax);
   float through = 1.0;
@@ -64,26 +73,6 @@ float traceTransmittance(vec3 origin, vec3 direction, float tMax) {
     }
   }
   return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT ? through : 0.0;
-}
-#endif
-
-#if defined(WEIR_SURFACE)
-// A ray's start, moved off the surface by its error, to the side that `direction` leaves it.
-vec3 offsetOrigin(Surface s, vec3 direction) {
-  return s.position + s.geometricNormal * (dot(s.geometricNormal, direction) < 0.0 ? -s.error : s.error);
-}
-#endif
-
-#if defined(WEIR_LIGHTS) && defined(WEIR_SURFACE)
-// Transmittance between a surface and a point on a light: the segment between the two points, each moved towards the other side by
-// its own error, so that neither surface blocks itself.
-float traceVisibility(Surface s, LightSample light) {
-  const vec3 origin = offsetOrigin(s, light.direction);
-  const vec3 d = light.target - origin;
-  const vec3 largest = max(abs(light.target), abs(origin));
-  const float targetError = max(largest.x, max(largest.y, largest.z)) * (16.0 / 8388608.0);
-  const float tMax = 1.0 - targetError * inversesqrt(dot(d, d));
-  return tMax > 0.0 ? traceTransmittance(origin, d, tMax) : 1.0;
 }
 #endif
 

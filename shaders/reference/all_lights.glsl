@@ -2,8 +2,7 @@
 // reservoirs only the BSDF, the light's own formula and the rays; nothing here picks, weighs or reuses.
 #include "random.glsl"
 #include "bsdf.glsl"
-#include "lights.glsl"
-#include "trace.glsl"
+#include "visibility.glsl"
 
 vec3 arriving(Surface surface, LightSample light) {
   if (light.radiance == vec3(0.0)) return vec3(0.0);

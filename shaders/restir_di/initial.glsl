@@ -2,7 +2,6 @@
 // proportion to p̂/p. Several reservoirs of a pixel share the candidates and choose from them independently.
 #include "random.glsl"
 #include "reservoir.glsl"
-#include "trace.glsl"
 
 void run(uvec2 pixel) {
   const uint index = pixel.y * frameWidth + pixel.x;
@@ -32,7 +31,9 @@ void run(uvec2 pixel) {
   }
   for (uint k = 0u; k < out_reservoirs_count; ++k) {
     Reservoir r = lit ? finish(selections[k], 1.0) : emptyReservoir();
+#ifdef CAN_TRACE
     if (param_visibility && lit) testVisibility(r, surface);
+#endif
     out_reservoirs[index * out_reservoirs_count + k] = r;
   }
 }

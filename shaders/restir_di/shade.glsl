@@ -1,5 +1,4 @@
 // The picture: f(y) · V(y) · W(y), the mean over the pixel's reservoirs, plus what the surface itself emits.
-#include "trace.glsl"
 #include "reservoir.glsl"
 
 void run(uvec2 pixel) {

@@ -1,7 +1,6 @@
 // Spatial reuse: each pixel's reservoirs are merged with those of pixels around it whose surfaces are alike.
 // Bitterli et al. 2020, section 4. One launch an iteration; launchIndex is its number.
 #include "random.glsl"
-#include "trace.glsl"
 #include "merge.glsl"
 
 const uint kPerPixel = in_reservoirs_count;

@@ -2,7 +2,6 @@
 // Bitterli et al. 2020, section 4; the history counts at most `confidenceCap` fresh frames. The history's target is that of LAST
 // frame's surface and camera.
 #include "random.glsl"
-#include "trace.glsl"
 #include "merge.glsl"
 
 const uint kPerPixel = in_reservoirs_count;
