@@ -82,6 +82,8 @@ struct PassCatalog {
   std::function<const PassDescription*(const std::string& type)> find;
   /// Every known type, for the nearest name.
   std::function<std::vector<std::string>()> types;
+  /// Why a type that find() does not know can't be had ("its plugin was refused because…"), or empty. May be left out.
+  std::function<std::string(const std::string& type)> problem;
 };
 
 /// Checks everything and plans. Findings are appended; when there are any (also from earlier steps), the result must not be used.

@@ -18,8 +18,10 @@ std::string toText(const RawValue& value);
 struct ParamEntry {
   std::string name;
   RawValue value;
-  int line = 0;
+  int line = 0;        ///< of the value
+  int nameLine = 0;    ///< of the key
   std::string origin;  ///< empty: the file; else "--set"
+  std::string text;    ///< from --set: the value as written, for texts that look like numbers
 };
 
 /// "pass.port" or "pass.port@previous".
@@ -33,7 +35,8 @@ struct InputEntry {
   std::string port;
   std::string text;  ///< as written
   std::optional<Reference> source;
-  int line = 0;
+  int line = 0;      ///< of the reference
+  int nameLine = 0;  ///< of the port
 };
 
 struct PassEntry {
@@ -42,6 +45,8 @@ struct PassEntry {
   std::vector<InputEntry> inputs;
   std::vector<ParamEntry> params;
   int line = 0, typeLine = 0, enabledLine = 0;
+  bool inputsBroken = false;  ///< "inputs" could not be read: what is missing there has been said
+  std::string enabledOrigin;  ///< who said `enabled`; empty: the file; else "--enable" or "--disable"
 };
 
 struct OutputEntry {
@@ -53,6 +58,7 @@ struct OutputEntry {
 
 struct Description {
   std::string file, name;
+  bool broken = false;             ///< no JSON, or without passes: further checks would only make noise
   std::vector<PassEntry> passes;  ///< in the file's order, which means nothing
   std::vector<OutputEntry> outputs;
   PassEntry* find(const std::string& pass);

@@ -1,0 +1,150 @@
+// Names to things: types, ports and the passes that references mean.
+#include <weir/core/text.h>
+#include <weir/graph/checked.h>
+#include <weir/graph/names.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace weir::graph {
+namespace {
+
+template <typename Items>
+uint32_t indexOf(const Items& items, const std::string& name) {
+  for (size_t i = 0; i < items.size(); ++i)
+    if (items[i].name == name) return static_cast<uint32_t>(i);
+  return kNone;
+}
+
+class Binder {
+ public:
+  Binder(const PassCatalog& catalog, Findings& findings) : catalog_(catalog), findings_(findings) {}
+
+  Checked bind(const Description& description) {
+    for (const PassEntry& entry : description.passes) {
+      Node node;
+      node.entry = &entry;
+      node.type = findType(entry);
+      if (node.type) bindParams(node, findings_);
+      checked_.nodes.push_back(std::move(node));
+    }
+    // By name: the file's order means nothing, so nothing may come of it.
+    std::sort(checked_.nodes.begin(), checked_.nodes.end(),
+              [](const Node& a, const Node& b) { return a.name() < b.name(); });
+    for (Node& node : checked_.nodes) bindInputs(node);
+    for (const OutputEntry& entry : description.outputs) {
+      OutputLink link{&entry, {}, {}};
+      if (entry.source) link.written = find(*entry.source, entry.line, "outputs." + entry.name);
+      checked_.outputs.push_back(link);
+    }
+    return std::move(checked_);
+  }
+
+ private:
+  const PassDescription* findType(const PassEntry& entry) {
+    if (entry.type.empty()) return nullptr;  // said by the parser
+    if (const PassDescription* type = catalog_.find(entry.type)) return type;
+    const std::vector<std::string> types = catalog_.types();
+    const std::string nearest = nearestName(entry.type, types);
+    const std::string problem = catalog_.problem ? catalog_.problem(entry.type) : "";
+    std::string message = fmt::format("unknown type '{}'", entry.type);
+    if (!problem.empty()) message += ": " + problem;
+    if (nearest.empty()) message += "; expected one of: " + listed(types);
+    findings_.add(entry.typeLine, "passes." + entry.name + ".type", message, nearest);
+    return nullptr;
+  }
+
+  void bindInputs(Node& node) {
+    std::vector<Link*> unknown;
+    node.links.reserve(node.entry->inputs.size());
+    for (const InputEntry& entry : node.entry->inputs) {
+      Link& link = node.links.emplace_back();
+      link.entry = &entry;
+      if (entry.source) link.written = find(*entry.source, entry.line, inputPath(node, entry.port));
+      if (!node.type) continue;
+      link.input = indexOf(node.type->inputs, entry.port);
+      if (link.input == kNone) unknown.push_back(&link);
+    }
+    if (!node.type) return;
+    for (Link* link : unknown) bindUnknown(node, *link);
+    if (node.entry->inputsBroken) return;
+    for (uint32_t i = 0; i < node.type->inputs.size(); ++i) {
+      const PortDescription& port = node.type->inputs[i];
+      if (port.required && !node.linkOf(i))
+        findings_.add(node.entry->line, inputPath(node, port.name),
+                      fmt::format("required input '{}' of {} is not connected; expected a reference to {}", port.name,
+                                  node.type->type, describe(port.type)));
+    }
+  }
+
+  /// A misspelt input is taken for the open one that it resembles, so that one slip stays one finding.
+  void bindUnknown(const Node& node, Link& link) {
+    std::vector<std::string> open;
+    for (uint32_t i = 0; i < node.type->inputs.size(); ++i)
+      if (!node.linkOf(i)) open.push_back(node.type->inputs[i].name);
+    const std::vector<std::string> all = namesOf(node.type->inputs);
+    std::string nearest = nearestName(link.entry->port, open);
+    if (!nearest.empty())
+      link.input = indexOf(node.type->inputs, nearest);
+    else
+      nearest = nearestName(link.entry->port, all);
+    findings_.add(link.entry->nameLine, inputPath(node, link.entry->port),
+                  fmt::format("unknown input '{}'; {} has: {}", link.entry->port, node.type->type, listed(all)),
+                  nearest);
+  }
+
+  Source find(const Reference& reference, int line, const std::string& path) {
+    Source source;
+    source.previous = reference.previous;
+    const auto& nodes = checked_.nodes;
+    const auto node = std::lower_bound(nodes.begin(), nodes.end(), reference.pass,
+                                       [](const Node& n, const std::string& name) { return n.name() < name; });
+    if (node == nodes.end() || node->name() != reference.pass) {
+      std::vector<std::string> names;
+      for (const Node& n : nodes) names.push_back(n.name());
+      findings_.add(line, path, fmt::format("there is no pass '{}'; the graph has: {}", reference.pass, listed(names)),
+                    nearestName(reference.pass, names));
+      return source;
+    }
+    source.node = static_cast<uint32_t>(node - nodes.begin());
+    if (!node->type) return source;
+    source.output = indexOf(node->type->outputs, reference.port);
+    if (source.output == kNone) {
+      const std::vector<std::string> names = namesOf(node->type->outputs);
+      findings_.add(line, path,
+                    fmt::format("pass '{}' ({}) has no output '{}'; it has: {}", reference.pass, node->type->type,
+                                reference.port, listed(names)),
+                    nearestName(reference.port, names));
+    }
+    return source;
+  }
+
+  static std::string inputPath(const Node& node, const std::string& port) {
+    return fmt::format("passes.{}.inputs.{}", node.name(), port);
+  }
+
+  const PassCatalog& catalog_;
+  Findings& findings_;
+  Checked checked_;
+};
+
+}  // namespace
+
+const Link* Node::linkOf(uint32_t input) const {
+  const auto found = std::find_if(links.begin(), links.end(), [&](const Link& link) { return link.input == input; });
+  return found == links.end() ? nullptr : &*found;
+}
+
+std::string Checked::text(const Source& source) const {
+  if (source.node == kNone) return "nothing";
+  const Node& node = nodes[source.node];
+  return fmt::format("{}.{}{}", node.name(), source.known() ? node.type->outputs[source.output].name : "?",
+                     source.previous ? "@previous" : "");
+}
+
+Checked bind(const Description& description, const PassCatalog& catalog, Findings& findings) {
+  return Binder(catalog, findings).bind(description);
+}
+
+}  // namespace weir::graph

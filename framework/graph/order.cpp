@@ -1,0 +1,89 @@
+// Which passes run, in which order, and why the others do not.
+#include <weir/graph/checked.h>
+#include <weir/graph/names.h>
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <queue>
+
+namespace weir::graph {
+namespace {
+
+/// Everything that an output depends on, in this frame or by way of earlier ones.
+std::vector<bool> findLive(const Checked& checked) {
+  std::vector<bool> live(checked.nodes.size(), false);
+  std::vector<uint32_t> open;
+  const auto reach = [&](const Source& source) {
+    if (source.node == kNone || live[source.node]) return;
+    live[source.node] = true;
+    open.push_back(source.node);
+  };
+  for (const OutputLink& output : checked.outputs) reach(output.resolved);
+  while (!open.empty()) {
+    const uint32_t n = open.back();
+    open.pop_back();
+    for (const Link& link : checked.nodes[n].links) reach(link.resolved);
+  }
+  return live;
+}
+
+std::string disabledReason(const Checked& checked, const Node& node) {
+  std::string text;
+  for (const PortDescription& port : node.type->outputs) {
+    if (port.passesThrough.empty()) continue;
+    for (const Link& link : node.links)
+      if (link.input != kNone && node.type->inputs[link.input].name == port.passesThrough)
+        text += fmt::format("; {} stands for its '{}'", checked.text(link.written), port.name);
+  }
+  return "it is disabled" + text;
+}
+
+std::string unreadReason(const Checked& checked, uint32_t unread) {
+  std::vector<std::string> readers;
+  for (const Node& node : checked.nodes)
+    for (const Link& link : node.links)
+      if (link.resolved.node == unread && (readers.empty() || readers.back() != node.name()))
+        readers.push_back(node.name());
+  if (readers.empty()) return "nothing reads it";
+  return "no output depends on it: it is read only by " + listed(readers) +
+         (readers.size() > 1 ? ", which do" : ", which does") + " not run or lead nowhere";
+}
+
+}  // namespace
+
+Order orderPasses(const Checked& checked) {
+  const std::vector<bool> live = findLive(checked);
+  std::vector<uint32_t> waitsFor(checked.nodes.size(), 0);
+  std::vector<std::vector<uint32_t>> readers(checked.nodes.size());
+  for (uint32_t n = 0; n < checked.nodes.size(); ++n)
+    for (const Link& link : checked.nodes[n].links)
+      if (live[n] && link.resolved.node != kNone && !link.resolved.previous) {
+        readers[link.resolved.node].push_back(n);
+        ++waitsFor[n];
+      }
+
+  Order order;
+  // Nodes are sorted by name, so the smallest index that is ready is the first name that is.
+  std::priority_queue<uint32_t, std::vector<uint32_t>, std::greater<>> ready;
+  for (uint32_t n = 0; n < checked.nodes.size(); ++n)
+    if (live[n] && waitsFor[n] == 0) ready.push(n);
+  while (!ready.empty()) {
+    const uint32_t n = ready.top();
+    ready.pop();
+    order.nodes.push_back(n);
+    for (uint32_t reader : readers[n])
+      if (--waitsFor[reader] == 0) ready.push(reader);
+  }
+
+  for (uint32_t n = 0; n < checked.nodes.size(); ++n) {
+    const Node& node = checked.nodes[n];
+    if (!node.enabled())
+      order.skipped.push_back({node.name(), disabledReason(checked, node)});
+    else if (!live[n])
+      order.skipped.push_back({node.name(), unreadReason(checked, n)});
+  }
+  return order;
+}
+
+}  // namespace weir::graph
