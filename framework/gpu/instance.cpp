@@ -93,7 +93,10 @@ VkInstance createInstance(bool validation, const VkDebugUtilsMessengerCreateInfo
   VkInstance instance = VK_NULL_HANDLE;
   const VkResult result = vkCreateInstance(&info, nullptr, &instance);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
-    throw RuntimeError("There is no Vulkan driver on this machine (Debian: mesa-vulkan-drivers has one for the CPU).");
+    throw RuntimeError(
+        "There is no Vulkan driver on this machine that can be loaded (Debian: mesa-vulkan-drivers has one for the "
+        "CPU). "
+        "VK_LOADER_DEBUG=error says which were tried.");
   }
   check(result, "vkCreateInstance");
   loadFunctions(instance);
