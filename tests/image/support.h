@@ -40,7 +40,9 @@ inline Picture constantPicture(uint32_t width, uint32_t height, float r, float g
   Picture picture;
   picture.width = width;
   picture.height = height;
-  for (size_t i = 0; i < size_t{width} * height; ++i) picture.rgba.insert(picture.rgba.end(), {r, g, b, 1.0f});
+  picture.rgba.resize(4 * size_t{width} * height);
+  const float colour[4] = {r, g, b, 1.0f};
+  for (size_t i = 0; i < picture.rgba.size(); ++i) picture.rgba[i] = colour[i % 4];
   return picture;
 }
 
