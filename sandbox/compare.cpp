@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <weir/core/error.h>
 #include <weir/image/metrics.h>
+#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <cstdio>
