@@ -34,8 +34,12 @@ std::vector<std::string> validNames(const CLI::App& app) {
 
 int sayParseError(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = innermost(app);
+  const std::vector<std::string> unknown = app.remaining(true);
   std::string text = error.what();
-  for (const std::string& argument : app.remaining(true)) {
+  // "A subcommand is required" is no help to somebody who gave one.
+  if (!unknown.empty() && dynamic_cast<const CLI::RequiredError*>(&error))
+    text = fmt::format("'{}' is not known here", unknown.front());
+  for (const std::string& argument : unknown) {
     const std::string nearest = weir::nearestName(argument.substr(0, argument.find('=')), validNames(command));
     if (!nearest.empty()) text += fmt::format(" ('{}': nearest is '{}')", argument, nearest);
   }

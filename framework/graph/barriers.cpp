@@ -16,10 +16,11 @@
 namespace weir::graph {
 namespace {
 
-/// Who uses a resource over the frames.
+/// Which passes read a resource. Whoever reads an output from outside brings barriers of his own, before and after:
+/// whether there is anybody is not known here, and a barrier after reads that did not happen would leave the last write
+/// pending.
 struct Use {
-  bool readNow = false;                              ///< this frame's value, by a pass or as an output
-  bool readPrevious = false;                         ///< last frame's value, likewise
+  bool read = false;                                 ///< in this frame or in the next
   bool visibleNow = false, visiblePrevious = false;  ///< while planning: the barrier is placed
 };
 
@@ -29,10 +30,7 @@ void planBarriers(CompiledGraph& graph) {
   std::vector<Use> uses(graph.resources.size());
   for (const CompiledPass& pass : graph.passes)
     for (const Binding& input : pass.inputs)
-      if (input.resource != kNone)
-        (input.previous ? uses[input.resource].readPrevious : uses[input.resource].readNow) = true;
-  for (const GraphOutput& output : graph.outputs)
-    (output.previous ? uses[output.resource].readPrevious : uses[output.resource].readNow) = true;
+      if (input.resource != kNone) uses[input.resource].read = true;
 
   for (CompiledPass& pass : graph.passes) {
     pass.barriers.clear();
@@ -46,10 +44,9 @@ void planBarriers(CompiledGraph& graph) {
       pass.barriers.push_back({input.resource, input.previous, Access::Write, Access::Read, from});
     }
     for (const Binding& output : pass.outputs) {
-      const Use& use = uses[output.resource];
-      // With history, the copy to be written was last frame's previous one.
-      const bool wasRead = graph.resources[output.resource].history ? use.readPrevious : use.readNow;
-      pass.barriers.push_back({output.resource, false, wasRead ? Access::Read : Access::Write, Access::Write, kNone});
+      // Reads came after a barrier that made the write visible, so that once they are over the write is too.
+      const Access before = uses[output.resource].read ? Access::Read : Access::Write;
+      pass.barriers.push_back({output.resource, false, before, Access::Write, kNone});
     }
   }
 }

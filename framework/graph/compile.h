@@ -38,7 +38,8 @@ struct Binding {
   bool previous = false;      ///< reads last frame's copy
 };
 
-/// Before this pass runs, `resource` must be made available from `before` to `after`.
+/// Before this pass runs, `resource` must be made available from `before` to `after`. Passes only: who reads a graph output from
+/// outside the graph puts a barrier before and after.
 struct Barrier {
   uint32_t resource = kNone;
   bool previous = false;

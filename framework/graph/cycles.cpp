@@ -23,6 +23,7 @@ class CycleFinder {
     leaving_.resize(checked.nodes.size());
     for (uint32_t n = 0; n < checked.nodes.size(); ++n)
       for (const Link& link : checked.nodes[n].links) {
+        if (checked.nodes[n].type && link.input == kNone) continue;  // an input that does not exist reads nothing
         const Source& source = link.resolved;
         if (source.node == kNone || source.previous || !seen.insert({source.node, n}).second) continue;
         leaving_[source.node].push_back(edges_.size());
@@ -98,7 +99,7 @@ class CycleFinder {
     findings_.add(edge.link->entry->line, fmt::format("passes.{}.inputs.{}", name(edge.to), edge.link->entry->port),
                   fmt::format("the passes form a cycle: {}; expected one of them to read the other's last frame, as "
                               "\"{}@previous\"",
-                              text, checked_.text(edge.link->resolved)));
+                              text, edge.link->entry->text));
   }
 
   const Checked& checked_;

@@ -46,8 +46,8 @@ std::string unreadReason(const Checked& checked, uint32_t unread) {
       if (link.resolved.node == unread && (readers.empty() || readers.back() != node.name()))
         readers.push_back(node.name());
   if (readers.empty()) return "nothing reads it";
-  return "no output depends on it: it is read only by " + listed(readers) +
-         (readers.size() > 1 ? ", which do" : ", which does") + " not run or lead nowhere";
+  return fmt::format("no output depends on it: only {} read{} it, and {} skipped too", listed(readers),
+                     readers.size() == 1 ? "s" : "", readers.size() == 1 ? "is" : "are");
 }
 
 }  // namespace
