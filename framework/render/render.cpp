@@ -3,6 +3,7 @@
 #include <weir/core/text.h>
 #include <weir/execute/executor.h>
 #include <weir/graph/compile.h>
+#include <weir/image/statistics.h>
 #include <weir/pass/registry.h>
 #include <weir/render/mean.h>
 #include <weir/render/render.h>
@@ -111,8 +112,7 @@ uint32_t restartSeed(uint32_t seed, uint32_t restart) {
 
 void render(const RenderOptions& o) {
   checkOptions(o);
-  std::vector<std::filesystem::path> folders(o.pluginPaths.begin(), o.pluginPaths.end());
-  Registry registry(pluginSearchPath(folders));
+  Registry registry(pluginSearchPath(o.pluginPaths));
   graph::CompiledGraph compiled = graph::compileFile(o.graph, withExposure(o), registry.catalog(), o.width, o.height);
   const std::vector<std::string> names = wanted(o, compiled);
 
@@ -139,7 +139,7 @@ void render(const RenderOptions& o) {
   execute::Executor executor(device, compiler, registry, scene, std::move(compiled), executorOptions);
   facts.compileSeconds = secondsSince(start);
 
-  std::map<std::string, RestartMean> means;
+  std::map<std::string, image::RestartAccumulator> means;
   std::vector<execute::FrameTimes> times;
   for (uint32_t r = 0; r < o.restarts; ++r) {
     executor.resetHistory();
@@ -152,7 +152,7 @@ void render(const RenderOptions& o) {
       if (o.progress) o.progress(uint64_t{r} * o.frames + f + 1, uint64_t{o.restarts} * o.frames);
     }
     executor.finish();
-    for (const std::string& name : names) means[name].add(window[name]);
+    for (const std::string& name : names) means[name].add(window[name].mean());
     for (execute::FrameTimes& t : executor.takeTimes()) times.push_back(std::move(t));
   }
 

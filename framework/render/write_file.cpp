@@ -1,9 +1,9 @@
 #include <unistd.h>
 #include <weir/core/error.h>
+#include <weir/image/atomic_file.h>
 #include <weir/render/write_file.h>
 
 #include <filesystem>
-#include <fstream>
 
 namespace weir::render {
 
@@ -16,22 +16,9 @@ void checkWritable(const std::string& path) {
 }
 
 void writeTextFile(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".tmp" + std::to_string(getpid());
-  {
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
-    file.flush();
-    if (!file) {
-      std::filesystem::remove(temporary);
-      throw RuntimeError("can't write " + path);
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (error) {
-    std::filesystem::remove(temporary);
-    throw RuntimeError("can't write " + path + ": " + error.message());
-  }
+  image::AtomicFile file(path);
+  std::fwrite(text.data(), 1, text.size(), file.stream());
+  file.commit();
 }
 
 }  // namespace weir::render

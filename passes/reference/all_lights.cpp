@@ -7,8 +7,8 @@ namespace weir::passes {
 void AllLights::describe(PassDescription& d) {
   d.doc("Direct light by a shadow ray to every punctual light and stratified samples on every emissive triangle");
   d.input("surface", perPixel<PackedSurface>());
-  d.input("emission", image(Format::RGBA32F));
-  d.output("color", image(Format::RGBA32F)).radiance();
+  d.input("emission", storageImage(Format::RGBA32F));
+  d.output("color", storageImage(Format::RGBA32F)).radiance();
   d.param("samples", 1).range(1, 16).doc("Strata a side on each emissive triangle: n² rays");
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
   d.needs(Need::FrameCamera).needs(Need::FrameIndex);

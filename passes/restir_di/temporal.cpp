@@ -6,7 +6,7 @@ namespace weir::passes {
 void Temporal::describe(PassDescription& d) {
   d.doc("Merges each pixel's reservoirs with those its surface had last frame");
   d.input("surface", perPixel<PackedSurface>());
-  d.input("motion", image(Format::RG32F));
+  d.input("motion", storageImage(Format::RG32F));
   d.input("previousSurface", perPixel<PackedSurface>()).doc("The surface port, @previous");
   d.input("reservoirs", perPixel<Reservoir>()).anyCount();
   d.input("history", perPixel<Reservoir>()).anyCount().doc("The last reuse's reservoirs, @previous");
