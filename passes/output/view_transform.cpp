@@ -131,9 +131,12 @@ ViewTransform makeViewTransform(const ViewChoice& choice) {
     const std::string display = chooseDisplay(from, choice.display);
     const std::string view = chooseView(from, display, choice.view);
     const auto transform = ocio::GroupTransform::Create();
-    if (!isRaw(*from.config, display, view)) {
+    const bool raw = isRaw(*from.config, display, view);
+    // A raw view has no use for the space; a wrong name is wrong all the same.
+    const std::string space = raw && choice.space.empty() ? "" : enter(from, choice.space, *transform);
+    if (!raw) {
       const auto shown = ocio::DisplayViewTransform::Create();
-      shown->setSrc(enter(from, choice.space, *transform).c_str());
+      shown->setSrc(space.c_str());
       shown->setDisplay(display.c_str());
       shown->setView(view.c_str());
       transform->appendTransform(shown);
