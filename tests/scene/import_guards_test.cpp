@@ -31,7 +31,8 @@ TEST(ImportGuards, EveryPrefixAndEveryFlippedByteOfAGlb) {
   const TempFolder folder;
   const std::string glb = GltfText::triangle().glb();
   ASSERT_NO_THROW(importGltf(folder.write("whole.glb", glb)));
-  for (size_t n = 0; n < glb.size(); ++n) EXPECT_THROW(importGltf(folder.write("cut.glb", glb.substr(0, n))), InputError) << n;
+  for (size_t n = 0; n < glb.size(); ++n)
+    EXPECT_THROW(importGltf(folder.write("cut.glb", glb.substr(0, n))), InputError) << n;
   for (size_t n = 0; n < glb.size(); ++n)
     for (const char flip : {char(0xff), char(0x01), char(0x80)}) {
       std::string broken = glb;
@@ -128,8 +129,8 @@ TEST(ImportGuards, UrisStayInTheFolder) {
   };
   EXPECT_NO_THROW(importGltf(with("beside.bin")));
   EXPECT_NO_THROW(importGltf(with("./beside%2Ebin")));
-  for (const std::string uri : {"../outside.bin", "%2e%2e/outside.bin", "link.bin", "/etc/passwd", "file:///etc/passwd", "",
-                                "absent.bin", "x/../../outside.bin", "http://127.0.0.1/x.bin", "."}) {
+  for (const std::string uri : {"../outside.bin", "%2e%2e/outside.bin", "link.bin", "/etc/passwd", "file:///etc/passwd",
+                                "", "absent.bin", "x/../../outside.bin", "http://127.0.0.1/x.bin", "."}) {
     try {
       importGltf(with(uri));
       ADD_FAILURE() << uri << " was read";
@@ -140,7 +141,8 @@ TEST(ImportGuards, UrisStayInTheFolder) {
 }
 
 TEST(ImportGuards, ExtensionsRequiredAreRefusedByName) {
-  for (const std::string name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu", "KHR_texture_transform", "X_y"}) {
+  for (const std::string name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu",
+                                 "KHR_texture_transform", "X_y"}) {
     GltfText g = GltfText::triangle();
     g.j["extensionsUsed"] = {name};
     const Scene scene = load(g.text());

@@ -6,6 +6,7 @@
 #include <weir/scene/import.h>
 #include <weir/scene/prepared.h>
 
+#include <unistd.h>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -13,7 +14,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 namespace weir::scene::test {
@@ -59,7 +59,8 @@ struct GltfText {
   }
   template <class T>
   int accessor(const std::vector<T>& data, int componentType, const std::string& type, size_t count) {
-    j["accessors"].push_back({{"bufferView", view(data)}, {"componentType", componentType}, {"count", count}, {"type", type}});
+    j["accessors"].push_back(
+        {{"bufferView", view(data)}, {"componentType", componentType}, {"count", count}, {"type", type}});
     return static_cast<int>(j["accessors"].size()) - 1;
   }
   int vec3(const std::vector<float>& data) { return accessor(data, 5126, "VEC3", data.size() / 3); }
@@ -88,7 +89,8 @@ struct GltfText {
   std::string text() const {
     json out = j;
     if (!out.contains("buffers") && !binary.empty())
-      out["buffers"] = {{{"byteLength", binary.size()}, {"uri", "data:application/octet-stream;base64," + base64(binary)}}};
+      out["buffers"] = {
+          {{"byteLength", binary.size()}, {"uri", "data:application/octet-stream;base64," + base64(binary)}}};
     return out.dump();
   }
   /// The same as a GLB.
@@ -125,7 +127,8 @@ inline std::string sceneFolder() {
   const char* given = std::getenv("WEIR_SCENES");
   const std::string folder = given ? given : WEIR_SOURCE_DIR "/../shared/scenes";
   if (fs::exists(folder)) return folder;
-  std::cerr << "\n*** NO SCENES AT " << folder << ": THE TESTS ON LARGE AND MALFORMED SCENES ARE SKIPPED. SET WEIR_SCENES. ***\n\n";
+  std::cerr << "\n*** NO SCENES AT " << folder
+            << ": THE TESTS ON LARGE AND MALFORMED SCENES ARE SKIPPED. SET WEIR_SCENES. ***\n\n";
   return {};
 }
 
