@@ -12,6 +12,8 @@ namespace {
 
 // Deeper than any glTF needs (a material extension's texture is at 7) and shallow enough for every recursion.
 constexpr int kJsonDepth = 64;
+// "{}" is two bytes in a file and up to kilobytes as a parsed node or material.
+constexpr uint64_t kJsonObjects = 4'000'000;
 
 uint32_t readLittle(std::span<const uint8_t> bytes, size_t at) {
   return bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16) | (static_cast<uint32_t>(bytes[at + 3]) << 24);
@@ -121,6 +123,7 @@ void GltfFile::splitContainer() {
 
 void GltfFile::parseJson(std::span<const uint8_t> text) {
   int depth = 0;
+  uint64_t objects = 0;
   bool quoted = false;
   for (size_t i = 0; i < text.size(); ++i) {
     const uint8_t c = text[i];
@@ -133,6 +136,7 @@ void GltfFile::parseJson(std::span<const uint8_t> text) {
       quoted = true;
     } else if (c == '{' || c == '[') {
       if (++depth > kJsonDepth) fail("", "JSON nested more than " + std::to_string(kJsonDepth) + " deep");
+      if (c == '{' && ++objects > kJsonObjects) fail("", "more than " + std::to_string(kJsonObjects) + " JSON objects");
     } else if (c == '}' || c == ']') {
       --depth;
     }

@@ -2,6 +2,8 @@
 #include <weir/scene/gltf_import.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace weir::scene {
 namespace {
@@ -64,6 +66,13 @@ float unit(GltfImport& import, double value, const char* what) {
   return static_cast<float>(std::clamp(value, 0.0, 1.0));
 }
 
+/// A JSON number can be beyond all floats.
+float orDefault(GltfImport& import, double value, float otherwise) {
+  if (std::abs(value) <= std::numeric_limits<float>::max()) return static_cast<float>(value);
+  import.warn("a number beyond all floats is replaced by its default");
+  return otherwise;
+}
+
 /// A vertex carries one pair of texture coordinates: a material's textures must agree on the set.
 int settleUvSet(GltfImport& import, Material& material) {
   TextureSlot* slots[] = {&material.baseColorTexture, &material.emissiveTexture, &material.normalTexture,
@@ -108,7 +117,7 @@ void importMaterials(GltfImport& import) {
     for (int i = 0; i < 3; ++i)
       if (!std::isfinite(m.emission[i]))
         import.file.fail("/materials", "\"" + m.name + "\" has an emission beyond all numbers");
-    m.normalScale = static_cast<float>(from.normalTexture.scale);
+    m.normalScale = orDefault(import, from.normalTexture.scale, 1.0f);
     m.baseColorTexture = slotOf(import, pbr.baseColorTexture);
     m.metallicRoughnessTexture = slotOf(import, pbr.metallicRoughnessTexture);
     m.normalTexture = slotOf(import, from.normalTexture);
@@ -119,7 +128,7 @@ void importMaterials(GltfImport& import) {
       m.alphaMode = AlphaMode::Blend;
     else if (from.alphaMode != "OPAQUE")
       import.warn("unknown alphaMode \"" + from.alphaMode + "\" is taken as OPAQUE");
-    m.alphaCutoff = static_cast<float>(from.alphaCutoff);
+    m.alphaCutoff = orDefault(import, from.alphaCutoff, 0.5f);
     m.doubleSided = from.doubleSided;
     import.materialUvSet.push_back(settleUvSet(import, m));
     import.scene.materials.push_back(std::move(m));

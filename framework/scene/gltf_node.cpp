@@ -187,7 +187,8 @@ class NodeImport {
     }
     light.position = glm::vec3(world[3]);
     light.direction = direction(world, {0.0, 0.0, -1.0});
-    if (light.kind != LightKind::Directional) light.range = static_cast<float>(std::max(from.range, 0.0));
+    if (light.kind != LightKind::Directional)
+      light.range = from.range > 0.0 && from.range < 1e38 ? static_cast<float>(from.range) : 0.0f;
     if (light.kind == LightKind::Spot) {
       double inner = from.spot.innerConeAngle, outer = from.spot.outerConeAngle;
       if (!(inner >= 0.0 && inner < outer && outer <= kPi / 2)) {

@@ -37,7 +37,7 @@ tinygltf::Model parseStructure(const GltfFile& file) {
     tinygltf::TinyGLTF loader;
     std::string error, warning;
     if (!loader.LoadASCIIFromString(&model, &error, &warning, text.c_str(), static_cast<unsigned>(text.size()), ""))
-      file.fail("", error.empty() ? "not understood" : error);
+      file.fail("", error.empty() ? "not understood" : error.substr(0, error.find('\n')));
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& e) {

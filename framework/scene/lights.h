@@ -45,7 +45,9 @@ std::vector<double> aliasProbabilities(const std::vector<AliasCell>& table);
 
 /// `--lights N`: N point lights, positions uniform in the scene's bounds, colours uniform in [0,1]³ scaled so that the total of
 /// their luminous intensity is kGeneratedIntensity · r² candela for bounding radius r, whatever N. Counter-based from `seed`:
-/// the first k lights' positions are the same for every N ≥ k. Replaces nothing: the caller empties Scene::lights where asked.
+/// the first k lights' positions are the same for every N ≥ k. Number d of light i is the top 24 bits of mix(mix(mix(seed) ^ i) + d),
+/// mix being SplitMix64's step; d = 0, 1, 2 place it in the bounds, colour c_i is d = 3, 4, 5, and
+/// intensity_i = c_i · kGeneratedIntensity · r² / Σ_j luminance(c_j). Throws InputError when there is no geometry. Replaces nothing: the caller empties Scene::lights where asked.
 void addGeneratedLights(Scene& scene, uint32_t count, uint32_t seed);
 inline constexpr float kGeneratedIntensity = 10.0f;
 

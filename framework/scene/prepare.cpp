@@ -8,10 +8,6 @@
 namespace weir::scene {
 namespace {
 
-// A mesh becomes an instanced range when merging it would make more triangles than this and it is used this often.
-constexpr uint64_t kMergeTriangles = 2'000'000;
-constexpr size_t kMergeUses = 4;
-
 /// Index of the texture as a slot uses it; equal uses share one.
 int32_t prepareTexture(const Scene& scene, const TextureSlot& slot, bool srgb, PreparedScene& prepared) {
   if (!slot) return -1;
@@ -52,13 +48,13 @@ uint32_t packedIndex(const PreparedScene& prepared, const Primitive& primitive) 
                                  : static_cast<uint32_t>(prepared.materials.size() - 1);
 }
 
-bool isInstanced(const Scene& scene, const Mesh& mesh, size_t uses) {
+bool isInstanced(const Scene& scene, const Mesh& mesh, uint64_t uses, const PrepareLimits& limits) {
   uint64_t triangles = 0;
   for (const Primitive& primitive : mesh.primitives) {
     triangles += primitive.indices.size() / 3;
     if (primitive.material >= 0 && scene.materials[primitive.material].isEmissive()) return false;
   }
-  return uses >= kMergeUses && uses * triangles > kMergeTriangles;
+  return uses >= limits.mergeUses && uses * triangles > limits.mergeTriangles;
 }
 
 Bounds rangeBounds(const PreparedScene& prepared, const TriangleRange& range, const glm::dmat4& toWorld) {
@@ -84,7 +80,7 @@ void placeInstances(const std::vector<PreparedInstance>& unsorted, PreparedScene
 
 }  // namespace
 
-PreparedScene prepareScene(const Scene& scene) {
+PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits) {
   PreparedScene prepared;
   for (const Material& material : scene.materials)
     prepared.materials.push_back(packMaterial(scene, material, prepared));
@@ -93,7 +89,7 @@ PreparedScene prepareScene(const Scene& scene) {
   std::vector<size_t> uses(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) ++uses[instance.mesh];
   std::vector<char> instanced(scene.meshes.size(), 0);
-  for (size_t m = 0; m < scene.meshes.size(); ++m) instanced[m] = isInstanced(scene, scene.meshes[m], uses[m]);
+  for (size_t m = 0; m < scene.meshes.size(); ++m) instanced[m] = isInstanced(scene, scene.meshes[m], uses[m], limits);
 
   GeometryRange merged(prepared.materials);
   for (const Instance& instance : scene.instances)

@@ -80,11 +80,18 @@ struct PreparedScene {
   uint64_t droppedTriangles = 0;  ///< degenerate or not finite
 };
 
-/// Arranges a scene. Static meshes are merged into world space (winding mended under mirroring transforms) except those that
+/// Arranges a scene, CPU only. Alpha-tested are the materials with mask or blend. Under an instance that flips the winding, object-space
+/// tangents' bitangent signs flip too. Textured triangle lights (kLightTextured): radiance is the factor alone, power uses the
+/// texture's mean over the triangle's texels; a triangle whose texels are all black is no light. Static meshes are merged into world space (winding mended under mirroring transforms) except those that
 /// are shared so often that merging would multiply memory; emissive ones are always merged, so that a light's triangle is
 /// unique. Power of a triangle: π · area · luminance of its mean emission (twice that when double-sided); of a point 4π · luminance
 /// of its intensity; a spot by its cone; a directional by the area of the scene's disc.
-PreparedScene prepareScene(const Scene& scene);
+/// A mesh is not merged when `uses >= mergeUses` and `uses * triangles > mergeTriangles`.
+struct PrepareLimits {
+  uint64_t mergeTriangles = 2'000'000;
+  uint32_t mergeUses = 4;
+};
+PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits = {});
 
 /// What `weir scene` prints.
 struct SceneSummary {
