@@ -1,10 +1,13 @@
-// The commands of `weir`, one file each. Each function adds its subcommand; the work runs in its callback, which throws
-// InputError or RuntimeError (main.cpp turns them into exit statuses) and prints results on stdout.
+// The commands of `weir`, one file each. Commands throw; main() turns exceptions into exit statuses.
 #pragma once
 
 namespace CLI {
 class App;
 }
 
-void addGraphCommand(CLI::App& app);
+void addRenderCommand(CLI::App& app);
+void addCompareCommand(CLI::App& app);
 void addPassesCommand(CLI::App& app);
+void addSceneCommand(CLI::App& app);
+void addDevicesCommand(CLI::App& app);
+void addGraphCommand(CLI::App& app);

@@ -62,8 +62,12 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "weir " WEIR_VERSION);
   app.set_help_all_flag("--help-all", "help on every command");
   app.require_subcommand(1);
+  addRenderCommand(app);
+  addCompareCommand(app);
   addGraphCommand(app);
   addPassesCommand(app);
+  addSceneCommand(app);
+  addDevicesCommand(app);
   try {
     app.parse(argc, argv);
     return std::fflush(stdout) == 0 ? kDone : kFailed;

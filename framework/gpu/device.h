@@ -16,6 +16,7 @@ struct DeviceOptions {
   bool validation = false;  ///< Khronos validation with synchronization checks; InputError where the layer isn't installed
   bool hideRayTracing = false;  ///< as if the device had none (tests of the raster path)
   bool hideRayQuery = false, hideRayPipeline = false;
+  std::string cacheFolder;  ///< for the pipeline cache; empty: as `shader::Compiler`; "-": none
 };
 
 /// What a device offers beyond Weir's minimum.
@@ -81,6 +82,14 @@ class Device {
 
  private:
   struct Messages;
+  struct Immediate;
+  static VkBool32 VKAPI_PTR receive(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                    VkDebugUtilsMessageTypeFlagsEXT types,
+                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
+  void create(const DeviceOptions& options);
+  void createHandle();
+  void createAllocator();
+  void destroy() noexcept;
   DeviceInfo info_;
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
@@ -92,6 +101,8 @@ class Device {
   VkPipelineCache pipelineCache_ = VK_NULL_HANDLE;
   VkCommandPool immediatePool_ = VK_NULL_HANDLE;
   std::unique_ptr<Messages> messages_;
+  std::unique_ptr<Immediate> immediate_;  ///< submitAndWait's, one caller at a time
+  std::string cacheFolder_;               ///< resolved; empty: the pipeline cache is not kept
 };
 
 /// Throws RuntimeError naming the call and the result when it isn't VK_SUCCESS.

@@ -4,6 +4,8 @@
 #ifndef VK_NO_PROTOTYPES
 #define VK_NO_PROTOTYPES
 #endif
+#include <weir_vulkan_names.h>  // first: renames what volk declares, see cmake/vulkan_names.cmake
+
 #include <volk.h>
 
 using VmaAllocator = struct VmaAllocator_T*;

@@ -1,6 +1,7 @@
 // Pictures as plain floats, read from and written to files. Row 0 is the top.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -28,5 +29,11 @@ enum class Encoding : unsigned char { Radiance, Display };
 void writePng(const std::string& path, const Picture& picture, Encoding encoding);
 /// 8- or 16-bit PNG, values/max as they are (no decoding of sRGB). Throws InputError.
 Picture readPng(const std::string& path);
+
+enum class FileKind : unsigned char { Exr, Png };
+/// What the file is by its first bytes, whatever its name says. Throws InputError.
+FileKind fileKind(const std::string& path);
+/// readExr or readPng by fileKind(). Throws InputError.
+Picture readPicture(const std::string& path);
 
 }  // namespace weir::image

@@ -106,7 +106,7 @@ PortType fixedBuffer(uint32_t count) {
   return t;
 }
 /// A storage image of the frame's size.
-PortType image(Format format);
+PortType storageImage(Format format);
 
 /// How an image's numbers are meant; a PNG encodes radiance and writes display values as they are.
 enum class Meaning : uint8_t { Data, Radiance, Display };

@@ -61,7 +61,7 @@ uint32_t formatBytes(Format format) {
   return 0;
 }
 
-PortType image(Format format) {
+PortType storageImage(Format format) {
   PortType type;
   type.kind = PortKind::Image;
   type.format = format;

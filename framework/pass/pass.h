@@ -1,16 +1,79 @@
-// What a pass does: prepare once, record every frame.
+// A pass: what it does with its ports once the graph is compiled. It asks for kernels by shader file and launches them; ports,
+// parameters, scene and frame data are bound by name (shaders see in_<port>, out_<port>, scratch_<name>, param_<name>).
 #pragma once
+
+#include <weir/pass/description.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace weir {
 
-class PrepareContext;
-class RecordContext;
+/// A prepared kernel; belongs to the pass that prepared it.
+struct Kernel {
+  uint32_t index = 0xffffffffu;
+};
+
+struct KernelOptions {
+  /// What this kernel sees in place of a port: {"in_reservoirs", "scratch_ping"}; both sides name the pass's own ports or scratch.
+  std::vector<std::pair<std::string, std::string>> bind;
+  std::vector<std::pair<std::string, std::string>> defines;
+  /// Shader files that exist only in memory, found by #include "name".
+  std::vector<std::pair<std::string, std::string>> sources;
+};
+
+/// A constant texture of the pass's own, sampled by the shader as `texture_<name>`. RGBA float, clamped.
+struct TextureData {
+  uint32_t width = 1, height = 1, depth = 0;  ///< depth 0: a 2D texture, else 3D
+  bool linear = true;
+  std::vector<float> rgba;
+};
+
+/// Answers about the compiled pass. Asking for what the description doesn't declare throws InputError naming pass and name.
+class PassContext {
+ public:
+  virtual ~PassContext() = default;
+  virtual bool boolean(const std::string& param) const = 0;
+  virtual int integer(const std::string& param) const = 0;
+  virtual float number(const std::string& param) const = 0;
+  virtual std::string text(const std::string& param) const = 0;  ///< String, or an Enum's choice
+  virtual bool connected(const std::string& input) const = 0;
+  virtual uint32_t width() const = 0;   ///< of the frame
+  virtual uint32_t height() const = 0;
+  virtual std::string sceneFolder() const = 0;
+};
+
+/// Called when the graph is compiled, and again when a parameter changes that specialises.
+class PrepareContext : public PassContext {
+ public:
+  /// A buffer or image of the pass's own, alive within a frame.
+  virtual void scratch(const std::string& name, const PortType& type) = 0;
+  virtual void texture(const std::string& name, TextureData data) = 0;
+  /// A compute kernel: the file defines `void run(uvec2 id)`, called once for each id below the launch's size.
+  virtual Kernel kernel(const std::string& file, const KernelOptions& options = {}) = 0;
+  /// The same, and it may trace rays (needs scene.acceleration): a ray generation shader or compute with ray queries.
+  virtual Kernel rayKernel(const std::string& file, const KernelOptions& options = {}) = 0;
+  /// Draws every triangle of the scene, depth-tested, into an R32U scratch image cleared to ~0. The file defines
+  /// `vec4 vertex(uint instance, uint triangle, uint corner)` (clip position) and `uint fragment(...)`: see shaders/gbuffer/raster.glsl.
+  virtual Kernel rasterKernel(const std::string& file, const std::string& target, const KernelOptions& options = {}) = 0;
+};
+
+/// Called every frame. Launches run in order; each sees what the ones before it wrote.
+class RecordContext : public PassContext {
+ public:
+  /// Over the frame's size. `index` is the shader's launchIndex.
+  virtual void launch(Kernel kernel, uint32_t index = 0) = 0;
+  virtual void launch(Kernel kernel, uint32_t width, uint32_t height, uint32_t index) = 0;
+  virtual void draw(Kernel kernel) = 0;
+};
 
 class Pass {
  public:
   virtual ~Pass() = default;
-  virtual void prepare(PrepareContext&) = 0;
-  virtual void record(RecordContext&) = 0;
+  virtual void prepare(PrepareContext& context) = 0;
+  virtual void record(RecordContext& context) = 0;
 };
 
 }  // namespace weir

@@ -1,4 +1,5 @@
 #include <weir/core/error.h>
+#include <weir/core/paths.h>
 #include <weir/pass/plugin_loader.h>
 
 #include <dlfcn.h>
@@ -13,15 +14,6 @@ namespace weir {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The folder that the framework's own library was loaded from; its address is that of any function in it.
-fs::path ownFolder() {
-  Dl_info info{};
-  if (!dladdr(reinterpret_cast<void*>(&readManifest), &info) || !info.dli_fname) return {};
-  std::error_code error;
-  const fs::path file = fs::canonical(info.dli_fname, error);
-  return error ? fs::path() : file.parent_path();
-}
 
 void compareBuild(const std::string& who, uint32_t abi, std::string_view buildTag) {
   if (abi != WEIR_ABI_VERSION)
@@ -49,7 +41,7 @@ std::vector<fs::path> pluginSearchPath(const std::vector<std::string>& folders) 
       rest.remove_prefix(std::min(rest.size(), folder.size() + 1));
     }
   }
-  if (fs::path own = ownFolder(); !own.empty()) path.push_back(std::move(own));
+  if (fs::path own = libraryFolder(); !own.empty()) path.push_back(std::move(own));
   return path;
 }
 

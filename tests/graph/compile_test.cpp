@@ -136,8 +136,8 @@ TEST_F(Compile, AnInputOfNoNameIsTwoFaultsOnlyWhenItIsTwo) {
 TEST_F(Compile, RequiredInputs) {
   expectSays(change(", \"motion\": \"gbuffer.motion\"", ""), "passes.temporal.inputs.motion", 9,
              "not connected; expected a reference to image RG32F");
-  fakes.add("output.Maybe").input("color", image(Format::RGBA32F)).optional();
-  fakes.add("output.Maybe").output("color", image(Format::RGBA8));
+  fakes.add("output.Maybe").input("color", storageImage(Format::RGBA32F)).optional();
+  fakes.add("output.Maybe").output("color", storageImage(Format::RGBA8));
   const Result r =
       ok(replaced(example, "\"output.Tonemap\", \"inputs\": { \"color\": \"shade.color\" }", "\"output.Maybe\""));
   EXPECT_EQ(r.source("tonemap", "color"), "");
@@ -227,7 +227,7 @@ TEST_F(Compile, OverridesThatAreWrong) {
 }
 
 TEST_F(Compile, OneWrongEdgeIsOneCycleHoweverManyItCloses) {
-  fakes.add("restir_di.Initial").input("late", image(Format::RGBA32F)).optional();
+  fakes.add("restir_di.Initial").input("late", storageImage(Format::RGBA32F)).optional();
   expectSays(
       change("\"surface\": \"gbuffer.surface\" }", "\"surface\": \"gbuffer.surface\", \"late\": \"shade.color\" }"),
       "passes.initial.inputs.late", 7, "shade → initial → temporal → spatial → shade");
@@ -235,9 +235,9 @@ TEST_F(Compile, OneWrongEdgeIsOneCycleHoweverManyItCloses) {
 
 TEST_F(Compile, SeparateCyclesAreReportedEach) {
   Fakes f;
-  f.add("t.Two").input("a", image(Format::R32F)).optional();
-  f.add("t.Two").input("b", image(Format::R32F)).optional();
-  f.add("t.Two").output("o", image(Format::R32F));
+  f.add("t.Two").input("a", storageImage(Format::R32F)).optional();
+  f.add("t.Two").input("b", storageImage(Format::R32F)).optional();
+  f.add("t.Two").output("o", storageImage(Format::R32F));
   const Result r =
       run("{\"version\": 1, \"passes\": {\n"
           "\"p\": {\"type\": \"t.Two\", \"inputs\": {\"a\": \"q.o\"}},\n"

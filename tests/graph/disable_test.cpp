@@ -78,9 +78,9 @@ TEST_F(Disable, WhatNobodyReadsNeedsNoPassThrough) {
 
 TEST_F(Disable, ADisabledReaderDoesNotCount) {
   // temporal reads gbuffer's motion, which nothing stands for; with temporal disabled nobody asks.
-  fakes.add("x.Denoise").input("color", image(Format::RGBA32F));
-  fakes.add("x.Denoise").output("color", image(Format::RGBA32F)).passesThrough("color");
-  fakes.add("x.Source").output("color", image(Format::RGBA32F));
+  fakes.add("x.Denoise").input("color", storageImage(Format::RGBA32F));
+  fakes.add("x.Denoise").output("color", storageImage(Format::RGBA32F)).passesThrough("color");
+  fakes.add("x.Source").output("color", storageImage(Format::RGBA32F));
   const std::string json =
       "{\"version\": 1, \"passes\": {\"s\": {\"type\": \"x.Source\"}, \"t\": {\"type\": \"x.Source\", \"enabled\": "
       "false},\n"
@@ -91,9 +91,9 @@ TEST_F(Disable, ADisabledReaderDoesNotCount) {
 
 TEST_F(Disable, AnotherLayoutOrAnOpenInputCantStandForIt) {
   PassDescription& convert = fakes.add("x.Convert");
-  convert.input("color", image(Format::RGBA32F)).optional();
-  convert.output("color", image(Format::RGBA8)).passesThrough("color");
-  convert.output("same", image(Format::RGBA32F)).passesThrough("color");
+  convert.input("color", storageImage(Format::RGBA32F)).optional();
+  convert.output("color", storageImage(Format::RGBA8)).passesThrough("color");
+  convert.output("same", storageImage(Format::RGBA32F)).passesThrough("color");
   const auto graph = [](const std::string& inputs, const std::string& port) {
     return "{\"version\": 1, \"passes\": {\"g\": {\"type\": \"gbuffer.RayTraced\"},\n\"c\": {\"type\": \"x.Convert\", "
            "\"enabled\": false" +
@@ -128,8 +128,8 @@ TEST_F(Disable, APassedThroughLastFrameStaysOneFrameOld) {
 }
 
 TEST_F(Disable, CyclesOfDisabledPassesAreReportedOnce) {
-  fakes.add("x.Same").input("a", image(Format::R32F));
-  fakes.add("x.Same").output("o", image(Format::R32F)).passesThrough("a");
+  fakes.add("x.Same").input("a", storageImage(Format::R32F));
+  fakes.add("x.Same").output("o", storageImage(Format::R32F)).passesThrough("a");
   const Result r =
       run("{\"version\": 1, \"passes\": {\n\"p\": {\"type\": \"x.Same\", \"enabled\": false, \"inputs\": {\"a\": "
           "\"q.o\"}},\n"

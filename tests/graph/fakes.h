@@ -54,8 +54,8 @@ inline Fakes exampleFakes() {
   for (const char* type : {"gbuffer.RayTraced", "gbuffer.Raster"}) {
     PassDescription& d = fakes.add(type);
     d.output("surface", buffer("PackedSurface"));
-    d.output("emission", image(Format::RGBA32F));
-    d.output("motion", image(Format::RG32F));
+    d.output("emission", storageImage(Format::RGBA32F));
+    d.output("motion", storageImage(Format::RG32F));
     d.param("jitter", false);
     d.needs(Need::SceneGeometry).needs(Need::FrameCamera);
   }
@@ -69,7 +69,7 @@ inline Fakes exampleFakes() {
   PassDescription& temporal = fakes.add("restir_di.Temporal");
   temporal.input("surface", buffer("PackedSurface"));
   temporal.input("previousSurface", buffer("PackedSurface"));
-  temporal.input("motion", image(Format::RG32F));
+  temporal.input("motion", storageImage(Format::RG32F));
   temporal.input("reservoirs", buffer("Reservoir"));
   temporal.input("history", buffer("Reservoir"));
   temporal.output("reservoirs", buffer("Reservoir")).passesThrough("reservoirs");
@@ -86,13 +86,13 @@ inline Fakes exampleFakes() {
 
   PassDescription& shade = fakes.add("restir_di.Shade");
   shade.input("surface", buffer("PackedSurface"));
-  shade.input("emission", image(Format::RGBA32F));
+  shade.input("emission", storageImage(Format::RGBA32F));
   shade.input("reservoirs", buffer("Reservoir"));
-  shade.output("color", image(Format::RGBA32F)).radiance();
+  shade.output("color", storageImage(Format::RGBA32F)).radiance();
 
   PassDescription& tonemap = fakes.add("output.Tonemap");
-  tonemap.input("color", image(Format::RGBA32F));
-  tonemap.output("color", image(Format::RGBA8)).display();
+  tonemap.input("color", storageImage(Format::RGBA32F));
+  tonemap.output("color", storageImage(Format::RGBA8)).display();
   tonemap.param("exposure", 0.0f).range(-20, 20).unit("EV");
   tonemap.param("label", "");
   return fakes;

@@ -78,9 +78,9 @@ class Machine {
 Fakes fakesForRandom() {
   Fakes fakes;
   PassDescription& node = fakes.add("r.Node");
-  for (const char* port : {"a", "b", "c"}) node.input(port, image(Format::R32F)).optional();
-  node.output("x", image(Format::R32F)).passesThrough("a");
-  node.output("y", image(Format::R32F)).passesThrough("b");
+  for (const char* port : {"a", "b", "c"}) node.input(port, storageImage(Format::R32F)).optional();
+  node.output("x", storageImage(Format::R32F)).passesThrough("a");
+  node.output("y", storageImage(Format::R32F)).passesThrough("b");
   return fakes;
 }
 

@@ -34,27 +34,27 @@ void expectBarriers(const Result& r, const std::string& pass, const std::vector<
 class Plan : public ::testing::Test {
  protected:
   Plan() {
-    fakes.add("t.Source").output("o", image(Format::R32F));
-    fakes.add("t.Filter").input("i", image(Format::R32F));
-    fakes.add("t.Filter").output("o", image(Format::R32F));
+    fakes.add("t.Source").output("o", storageImage(Format::R32F));
+    fakes.add("t.Filter").input("i", storageImage(Format::R32F));
+    fakes.add("t.Filter").output("o", storageImage(Format::R32F));
     PassDescription& mix = fakes.add("t.Mix");
-    mix.input("a", image(Format::R32F));
-    mix.input("b", image(Format::R32F));
-    mix.output("o", image(Format::R32F));
+    mix.input("a", storageImage(Format::R32F));
+    mix.input("b", storageImage(Format::R32F));
+    mix.output("o", storageImage(Format::R32F));
     PassDescription& many = fakes.add("t.Many");
     many.input("in", buffer("Reservoir")).anyCount();
     many.output("timesN", buffer("Reservoir")).times("n");
     many.output("like", buffer("Reservoir")).countOf("in");
-    many.output("half", image(Format::RGBA16F)).scale(1, 2);
+    many.output("half", storageImage(Format::RGBA16F)).scale(1, 2);
     many.output("table", fixedOf(buffer("Reservoir"), 100));
     many.param("n", 3).range(0, 1 << 30);
     fakes.add("t.One").output("o", buffer("Reservoir"));
     fakes.add("t.ReadOne").input("i", buffer("Reservoir"));
-    fakes.add("t.ReadOne").output("o", image(Format::R32F));
+    fakes.add("t.ReadOne").output("o", storageImage(Format::R32F));
     fakes.add("t.ReadTable").input("i", fixedOf(buffer("Reservoir"), 100));
-    fakes.add("t.ReadTable").output("o", image(Format::R32F));
-    fakes.add("t.ReadHalf").input("i", image(Format::RGBA16F)).scale(1, 2);
-    fakes.add("t.ReadHalf").output("o", image(Format::R32F));
+    fakes.add("t.ReadTable").output("o", storageImage(Format::R32F));
+    fakes.add("t.ReadHalf").input("i", storageImage(Format::RGBA16F)).scale(1, 2);
+    fakes.add("t.ReadHalf").output("o", storageImage(Format::R32F));
     fakes.check();
   }
   static PortType fixedOf(PortType type, uint32_t count) {
@@ -113,8 +113,8 @@ TEST_F(Plan, CountsThatDoNotFit) {
 }
 
 TEST_F(Plan, ScalesMustAgree) {
-  fakes.add("t.ReadFull").input("i", image(Format::RGBA16F));
-  fakes.add("t.ReadFull").output("o", image(Format::R32F));
+  fakes.add("t.ReadFull").input("i", storageImage(Format::RGBA16F));
+  fakes.add("t.ReadFull").output("o", storageImage(Format::R32F));
   const Result r =
       run(graphOf(kMany + ",\"r\": {\"type\": \"t.ReadFull\", \"inputs\": {\"i\": \"many.half\"}}", "\"x\": \"r.o\""),
           fakes);
@@ -178,8 +178,8 @@ TEST_F(Plan, OnlyTheFirstReaderWaits) {
 }
 
 TEST_F(Plan, TheSameInputTwiceIsOneBarrierAndAnUnreadOutputWaitsForItsOwnWrite) {
-  fakes.add("t.Two").output("o", image(Format::R32F));
-  fakes.add("t.Two").output("unread", image(Format::R32F));
+  fakes.add("t.Two").output("o", storageImage(Format::R32F));
+  fakes.add("t.Two").output("unread", storageImage(Format::R32F));
   const Result r = run(
       graphOf(
           "\"s\": {\"type\": \"t.Two\"}, \"m\": {\"type\": \"t.Mix\", \"inputs\": {\"a\": \"s.o\", \"b\": \"s.o\"}}",

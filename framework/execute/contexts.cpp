@@ -1,0 +1,234 @@
+#include <fmt/format.h>
+#include <weir/core/error.h>
+#include <weir/core/text.h>
+#include <weir/execute/contexts.h>
+
+#include <algorithm>
+#include <span>
+
+namespace weir::execute {
+namespace {
+
+std::string hint(const std::string& name, const std::vector<std::string>& known) {
+  const std::string nearest = nearestName(name, known);
+  return nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest);
+}
+
+}  // namespace
+
+template <typename Base>
+template <typename T>
+T Answers<Base>::get(const std::string& param) const {
+  const auto found = pass_.params.find(param);
+  if (found == pass_.params.end()) {
+    std::vector<std::string> known;
+    for (const auto& [name, value] : pass_.params) known.push_back(name);
+    throw InputError(fmt::format("{} ({}) asks for parameter '{}', which it doesn't declare{}", pass_.name, pass_.type, param,
+                                 hint(param, known)));
+  }
+  if (!std::holds_alternative<T>(found->second)) {
+    throw InputError(fmt::format("{} ({}) asks for parameter '{}' as another type than it declares", pass_.name, pass_.type, param));
+  }
+  return std::get<T>(found->second);
+}
+
+template <typename Base>
+bool Answers<Base>::connected(const std::string& input) const {
+  for (const graph::Binding& b : pass_.inputs) {
+    if (b.port == input) return b.resource != graph::kNone;
+  }
+  throw InputError(fmt::format("{} ({}) asks for input '{}', which it doesn't declare", pass_.name, pass_.type, input));
+}
+
+template class Answers<PrepareContext>;
+template class Answers<RecordContext>;
+
+void Preparing::beforeKernels(const std::string& what) const {
+  if (!runtime_.kernels_.empty()) {
+    throw InputError(fmt::format("{}: {} must be declared before the first kernel", runtime_.compiled_.name, what));
+  }
+}
+
+void Preparing::scratch(const std::string& name, const PortType& type) {
+  beforeKernels("scratch '" + name + "'");
+  const graph::CompiledPass& pass = runtime_.compiled_;
+  uint32_t perPixel = type.perPixel;
+  if (!type.perPixelFromParam.empty()) perPixel = static_cast<uint32_t>(integer(type.perPixelFromParam));
+  if (!type.perPixelFromInput.empty()) {
+    if (!connected(type.perPixelFromInput)) {
+      throw InputError(fmt::format("{}: scratch '{}' takes its count from the open input '{}'", pass.name, name, type.perPixelFromInput));
+    }
+    for (const graph::Binding& b : pass.inputs) {
+      if (b.port == type.perPixelFromInput) perPixel = runtime_.shared_.graph->resources[b.resource].perPixel;
+    }
+  }
+  auto scaled = [&](uint32_t side) {
+    return (side * type.scaleNumerator + type.scaleDenominator - 1) / type.scaleDenominator;
+  };
+  const uint32_t w = scaled(width()), h = scaled(height());
+  const uint64_t elements = type.fixedCount > 0 ? type.fixedCount : uint64_t{w} * h * perPixel;
+  const bool attachment = type.format == Format::R32U && runtime_.shared_.device->capabilities().graphics;
+  runtime_.scratch_.push_back(
+      makeStorage(*runtime_.shared_.device, type, w, h, elements, attachment, pass.name + " scratch " + name));
+  runtime_.interface_.scratch.push_back({name, type, perPixel});
+  if (runtime_.scratch_.back().image) {
+    runtime_.shared_.device->submitAndWait(
+        [&](VkCommandBuffer commands) { toGeneral(commands, runtime_.scratch_.back().image); });
+  }
+}
+
+void Preparing::texture(const std::string& name, TextureData data) {
+  beforeKernels("texture '" + name + "'");
+  const uint64_t texels = uint64_t{data.width} * data.height * std::max(1u, data.depth);
+  if (data.rgba.size() != 4 * texels) {
+    throw InputError(fmt::format("{}: texture '{}' has {} numbers, not {}", runtime_.compiled_.name, name, data.rgba.size(), 4 * texels));
+  }
+  gpu::ImageDesc desc;
+  desc.width = data.width;
+  desc.height = data.height;
+  desc.depth = std::max(1u, data.depth);
+  desc.type = data.depth > 0 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
+  desc.format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  PassRuntime::OwnTexture own;
+  own.image = gpu::uploadImage(*runtime_.shared_.device, desc, std::as_bytes(std::span(data.rgba)),
+                               runtime_.compiled_.name + " texture " + name);
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = data.linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  gpu::check(vkCreateSampler(runtime_.shared_.device->handle(), &info, nullptr, &own.sampler), "vkCreateSampler");
+  runtime_.textures_.push_back(std::move(own));
+  runtime_.interface_.textures.emplace_back(name, data.depth > 0);
+}
+
+Kernel Preparing::kernel(const std::string& file, const KernelOptions& options) {
+  return runtime_.addKernel(KernelKind::Compute, file, options);
+}
+
+Kernel Preparing::rayKernel(const std::string& file, const KernelOptions& options) {
+  const graph::CompiledPass& pass = runtime_.compiled_;
+  if (!pass.description->has(Need::SceneAcceleration)) {
+    throw InputError(fmt::format("{} ({}) traces rays but doesn't declare scene.acceleration", pass.name, pass.type));
+  }
+  if (runtime_.shared_.backend == trace::Backend::None) {
+    throw InputError(fmt::format("{} ({}) traces rays, and {} can't: it has neither ray-tracing pipelines nor ray queries", pass.name,
+                                 pass.type, runtime_.shared_.device->info().name));
+  }
+  const bool pipeline = runtime_.shared_.backend == trace::Backend::Pipeline;
+  return runtime_.addKernel(pipeline ? KernelKind::RayPipeline : KernelKind::RayQuery, file, options);
+}
+
+Kernel Preparing::rasterKernel(const std::string& file, const std::string& target, const KernelOptions& options) {
+  const graph::CompiledPass& pass = runtime_.compiled_;
+  if (!runtime_.shared_.device->capabilities().graphics) {
+    throw InputError(fmt::format("{} ({}) rasterises, and {} has no graphics queue", pass.name, pass.type,
+                                 runtime_.shared_.device->info().name));
+  }
+  uint32_t index = graph::kNone;
+  for (uint32_t i = 0; i < runtime_.interface_.scratch.size(); ++i) {
+    const Scratch& s = runtime_.interface_.scratch[i];
+    if (s.name == target && s.type.kind == PortKind::Image && s.type.format == Format::R32U) index = i;
+  }
+  if (index == graph::kNone) {
+    throw InputError(fmt::format("{}: rasterKernel's target '{}' is no R32U scratch image", pass.name, target));
+  }
+  const gpu::ImageDesc& color = runtime_.scratch_[index].image.desc();
+  gpu::ImageDesc desc;
+  desc.width = color.width;
+  desc.height = color.height;
+  desc.format = VK_FORMAT_D32_SFLOAT;
+  desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  runtime_.depth_ = gpu::Image(*runtime_.shared_.device, desc, pass.name + " depth");
+  runtime_.shared_.device->submitAndWait([&](VkCommandBuffer commands) { toGeneral(commands, runtime_.depth_); });
+  const Kernel kernel = runtime_.addKernel(KernelKind::Vertex, file, options);
+  runtime_.kernels_[kernel.index].rasterTarget = index;
+  return kernel;
+}
+
+const PassRuntime::PreparedKernel& Recording::kernelOf(Kernel kernel) const {
+  if (kernel.index >= runtime_.kernels_.size()) {
+    throw InputError(fmt::format("{} ({}) launches a kernel that it never prepared", runtime_.compiled_.name, runtime_.compiled_.type));
+  }
+  return runtime_.kernels_[kernel.index];
+}
+
+void Recording::barrier(VkPipelineStageFlags2 before, VkAccessFlags2 beforeAccess, VkPipelineStageFlags2 after,
+                        VkAccessFlags2 afterAccess) {
+  VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+  memory.srcStageMask = before;
+  memory.srcAccessMask = beforeAccess;
+  memory.dstStageMask = after;
+  memory.dstAccessMask = afterAccess;
+  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  info.memoryBarrierCount = 1;
+  info.pMemoryBarriers = &memory;
+  vkCmdPipelineBarrier2(cursor_.commands, &info);
+}
+
+void Recording::bind(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint32_t h, uint32_t index) {
+  // Launches of one pass see what the ones before them wrote.
+  if (!first_) {
+    const VkAccessFlags2 both = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT;
+    barrier(runtime_.stages_, VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT * (runtime_.depth_ ? 1 : 0),
+            runtime_.stages_, both);
+  }
+  first_ = false;
+  const VkPipelineBindPoint point = kernel.pipeline->bindPoint();
+  vkCmdBindPipeline(cursor_.commands, point, kernel.pipeline->handle());
+  const std::array sets = {cursor_.sceneSet, kernel.sets[cursor_.parity]};
+  vkCmdBindDescriptorSets(cursor_.commands, point, runtime_.pipelineLayout_, 0, static_cast<uint32_t>(sets.size()), sets.data(), 1,
+                          &cursor_.frameOffset);
+  std::vector<uint32_t>& push = runtime_.push_;
+  push[0] = w;
+  push[1] = h;
+  push[2] = index;
+  vkCmdPushConstants(cursor_.commands, runtime_.pipelineLayout_, VK_SHADER_STAGE_ALL, 0, static_cast<uint32_t>(push.size() * 4),
+                     push.data());
+}
+
+void Recording::launch(Kernel kernel, uint32_t launchWidth, uint32_t launchHeight, uint32_t index) {
+  const PassRuntime::PreparedKernel& prepared = kernelOf(kernel);
+  bind(prepared, launchWidth, launchHeight, index);
+  prepared.pipeline->launch(cursor_.commands, launchWidth, launchHeight);
+}
+
+void Recording::draw(Kernel kernel) {
+  const PassRuntime::PreparedKernel& prepared = kernelOf(kernel);
+  const gpu::Image& target = runtime_.scratch_[prepared.rasterTarget].image;
+  const VkExtent2D extent{target.desc().width, target.desc().height};
+  bind(prepared, extent.width, extent.height, 0);
+  // Depth and target were last touched by the frame before this one.
+  barrier(VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+          VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT,
+          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
+              VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
+  VkRenderingAttachmentInfo color{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+  color.imageView = target.view();
+  color.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+  color.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+  color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  color.clearValue.color.uint32[0] = 0xffffffffu;
+  VkRenderingAttachmentInfo depth{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+  depth.imageView = runtime_.depth_.view();
+  depth.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+  depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+  depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+  rendering.renderArea.extent = extent;
+  rendering.layerCount = 1;
+  rendering.colorAttachmentCount = 1;
+  rendering.pColorAttachments = &color;
+  rendering.pDepthAttachment = &depth;
+  vkCmdBeginRendering(cursor_.commands, &rendering);
+  const VkViewport viewport{0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1};
+  const VkRect2D scissor{{0, 0}, extent};
+  vkCmdSetViewport(cursor_.commands, 0, 1, &viewport);
+  vkCmdSetScissor(cursor_.commands, 0, 1, &scissor);
+  const std::vector<uint32_t>& drawn = runtime_.shared_.scene->drawnTriangles;
+  for (uint32_t i = 0; i < drawn.size(); ++i) {
+    if (drawn[i] > 0) vkCmdDraw(cursor_.commands, drawn[i] * 3, 1, 0, i);
+  }
+  vkCmdEndRendering(cursor_.commands);
+}
+
+}  // namespace weir::execute

@@ -1,0 +1,149 @@
+// Getting pictures and raw bytes out of an executor, and (for tests) bytes into it.
+#include <fmt/format.h>
+#include <weir/core/error.h>
+#include <weir/core/text.h>
+#include <weir/execute/executor.h>
+
+#include <glm/gtc/packing.hpp>
+
+#include <cstring>
+
+namespace weir::execute {
+namespace {
+
+VkBufferImageCopy wholeImage(const gpu::Image& image) {
+  VkBufferImageCopy copy{};
+  copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  copy.imageExtent = {image.desc().width, image.desc().height, 1};
+  return copy;
+}
+
+void unpackPixel(const std::byte* from, Format format, float* to) {
+  to[0] = to[1] = to[2] = 0.0f;
+  to[3] = 1.0f;
+  switch (format) {
+    case Format::R32F:
+      std::memcpy(to, from, 4);
+      to[1] = to[2] = to[0];
+      break;
+    case Format::RG32F: std::memcpy(to, from, 8); break;
+    case Format::RGBA32F: std::memcpy(to, from, 16); break;
+    case Format::RGBA16F:
+      for (int c = 0; c < 4; ++c) {
+        uint16_t half = 0;
+        std::memcpy(&half, from + 2 * c, 2);
+        to[c] = glm::unpackHalf1x16(half);
+      }
+      break;
+    case Format::RGBA8:
+      for (int c = 0; c < 4; ++c) to[c] = static_cast<float>(static_cast<uint8_t>(from[c])) / 255.0f;
+      break;
+    case Format::R32U: {
+      uint32_t value = 0;
+      std::memcpy(&value, from, 4);
+      to[0] = to[1] = to[2] = static_cast<float>(value);
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+uint32_t Executor::resourceNamed(const std::string& name) const {
+  std::vector<std::string> names;
+  for (uint32_t i = 0; i < graph_.resources.size(); ++i) {
+    if (graph_.resources[i].name == name) return i;
+    names.push_back(graph_.resources[i].name);
+  }
+  const std::string nearest = nearestName(name, names);
+  throw InputError(fmt::format("no resource '{}' in graph '{}'{}", name, graph_.name,
+                               nearest.empty() ? "" : " (nearest: '" + nearest + "')"));
+}
+
+std::vector<std::byte> Executor::download(const Storage& storage) {
+  if (storage.buffer) return gpu::readBuffer(device_, storage.buffer);
+  const gpu::ImageDesc& desc = storage.image.desc();
+  uint32_t texel = 4;
+  for (Format f : {Format::R32F, Format::RG32F, Format::RGBA32F, Format::RGBA16F, Format::RGBA8, Format::R32U}) {
+    if (vulkanFormat(f) == desc.format) texel = formatBytes(f);
+  }
+  const gpu::Buffer staging(device_, uint64_t{desc.width} * desc.height * texel, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                            gpu::Residency::Readback, "readback");
+  device_.submitAndWait([&](VkCommandBuffer commands) {
+    gpu::fullBarrier(commands);
+    const VkBufferImageCopy copy = wholeImage(storage.image);
+    vkCmdCopyImageToBuffer(commands, storage.image.handle(), VK_IMAGE_LAYOUT_GENERAL, staging.handle(), 1, &copy);
+    gpu::fullBarrier(commands);
+  });
+  staging.invalidate();
+  return {staging.mapped(), staging.mapped() + uint64_t{desc.width} * desc.height * texel};
+}
+
+std::vector<std::byte> Executor::readResource(const std::string& name) {
+  finish();
+  const uint32_t parity = static_cast<uint32_t>((frames_ + 1) & 1u);  // of the last frame
+  return download(resources_.at(resourceNamed(name), parity, false));
+}
+
+void Executor::writeResource(const std::string& name, std::span<const std::byte> bytes) {
+  finish();
+  // Both copies: the frame to come reads this one as its own or as the one before it.
+  for (uint32_t parity = 0; parity < 2; ++parity) {
+    const Storage& storage = resources_.at(resourceNamed(name), parity, false);
+    const gpu::Buffer staging(device_, bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Residency::Upload, "upload");
+    std::memcpy(staging.mapped(), bytes.data(), bytes.size());
+    staging.flush();
+    device_.submitAndWait([&](VkCommandBuffer commands) {
+      gpu::fullBarrier(commands);
+      if (storage.buffer) {
+        const VkBufferCopy copy{0, 0, std::min<uint64_t>(bytes.size(), storage.buffer.size())};
+        vkCmdCopyBuffer(commands, staging.handle(), storage.buffer.handle(), 1, &copy);
+      } else {
+        const VkBufferImageCopy copy = wholeImage(storage.image);
+        vkCmdCopyBufferToImage(commands, staging.handle(), storage.image.handle(), VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+      }
+      gpu::fullBarrier(commands);
+    });
+  }
+}
+
+Meaning Executor::meaning(const std::string& output) const {
+  const graph::GraphOutput* found = graph_.findOutput(output);
+  if (found == nullptr) throw InputError(fmt::format("graph '{}' has no output '{}'", graph_.name, output));
+  const graph::Resource& resource = graph_.resources[found->resource];
+  if (resource.producer == graph::kNone) return Meaning::Data;
+  const graph::CompiledPass& pass = graph_.passes[resource.producer];
+  for (size_t i = 0; i < pass.outputs.size(); ++i) {
+    if (pass.outputs[i].resource == found->resource) return pass.description->outputs[i].meaning;
+  }
+  return Meaning::Data;
+}
+
+image::Picture Executor::read(const std::string& output) {
+  std::vector<std::string> names;
+  for (const graph::GraphOutput& o : graph_.outputs) names.push_back(o.name);
+  const graph::GraphOutput* found = graph_.findOutput(output);
+  if (found == nullptr) {
+    const std::string nearest = nearestName(output, names);
+    throw InputError(fmt::format("graph '{}' has no output '{}'{}", graph_.name, output,
+                                 nearest.empty() ? "" : " (nearest: '" + nearest + "')"));
+  }
+  const graph::Resource& resource = graph_.resources[found->resource];
+  if (resource.type.kind != PortKind::Image) {
+    throw InputError(fmt::format("output '{}' ({}) is a buffer of {}, not a picture", output, resource.name, resource.type.layout.name));
+  }
+  finish();
+  const uint32_t parity = static_cast<uint32_t>((frames_ + 1) & 1u);
+  const std::vector<std::byte> bytes = download(resources_.at(found->resource, parity, found->previous));
+  image::Picture picture;
+  picture.width = resource.width;
+  picture.height = resource.height;
+  picture.rgba.resize(4 * size_t{resource.width} * resource.height);
+  const uint32_t texel = formatBytes(resource.type.format);
+  for (size_t i = 0; i < picture.rgba.size() / 4; ++i) {
+    unpackPixel(&bytes[i * texel], resource.type.format, &picture.rgba[4 * i]);
+  }
+  return picture;
+}
+
+}  // namespace weir::execute

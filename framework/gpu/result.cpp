@@ -1,0 +1,52 @@
+// Vulkan's results in words.
+#include <fmt/format.h>
+#include <weir/core/error.h>
+#include <weir/gpu/device.h>
+
+namespace weir::gpu {
+
+const char* resultName(VkResult result) {
+#define WEIR_RESULT(name) \
+  case name:              \
+    return #name
+  switch (result) {
+    WEIR_RESULT(VK_SUCCESS);
+    WEIR_RESULT(VK_NOT_READY);
+    WEIR_RESULT(VK_TIMEOUT);
+    WEIR_RESULT(VK_EVENT_SET);
+    WEIR_RESULT(VK_EVENT_RESET);
+    WEIR_RESULT(VK_INCOMPLETE);
+    WEIR_RESULT(VK_ERROR_OUT_OF_HOST_MEMORY);
+    WEIR_RESULT(VK_ERROR_OUT_OF_DEVICE_MEMORY);
+    WEIR_RESULT(VK_ERROR_INITIALIZATION_FAILED);
+    WEIR_RESULT(VK_ERROR_DEVICE_LOST);
+    WEIR_RESULT(VK_ERROR_MEMORY_MAP_FAILED);
+    WEIR_RESULT(VK_ERROR_LAYER_NOT_PRESENT);
+    WEIR_RESULT(VK_ERROR_EXTENSION_NOT_PRESENT);
+    WEIR_RESULT(VK_ERROR_FEATURE_NOT_PRESENT);
+    WEIR_RESULT(VK_ERROR_INCOMPATIBLE_DRIVER);
+    WEIR_RESULT(VK_ERROR_TOO_MANY_OBJECTS);
+    WEIR_RESULT(VK_ERROR_FORMAT_NOT_SUPPORTED);
+    WEIR_RESULT(VK_ERROR_FRAGMENTED_POOL);
+    WEIR_RESULT(VK_ERROR_OUT_OF_POOL_MEMORY);
+    WEIR_RESULT(VK_ERROR_INVALID_EXTERNAL_HANDLE);
+    WEIR_RESULT(VK_ERROR_FRAGMENTATION);
+    WEIR_RESULT(VK_ERROR_INVALID_OPAQUE_CAPTURE_ADDRESS);
+    WEIR_RESULT(VK_ERROR_SURFACE_LOST_KHR);
+    WEIR_RESULT(VK_ERROR_NATIVE_WINDOW_IN_USE_KHR);
+    WEIR_RESULT(VK_SUBOPTIMAL_KHR);
+    WEIR_RESULT(VK_ERROR_OUT_OF_DATE_KHR);
+    WEIR_RESULT(VK_ERROR_VALIDATION_FAILED_EXT);
+    WEIR_RESULT(VK_ERROR_INVALID_SHADER_NV);
+    default:
+      return "an unknown VkResult";
+  }
+#undef WEIR_RESULT
+}
+
+void check(VkResult result, const char* call) {
+  if (result == VK_SUCCESS) return;
+  throw RuntimeError(fmt::format("{} failed: {} ({}).", call, resultName(result), static_cast<int>(result)));
+}
+
+}  // namespace weir::gpu

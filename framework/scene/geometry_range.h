@@ -1,0 +1,44 @@
+// Gathers primitives into one range of packed triangles. Internal to scene/prepare.
+#pragma once
+
+#include <weir/scene/prepared.h>
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace weir::scene {
+
+/// Triangles that will share an acceleration structure, in the space that the transforms given to add() lead to.
+class GeometryRange {
+ public:
+  /// `materials` are the packed ones; the primitive's own index into them is `material`.
+  explicit GeometryRange(const std::vector<PackedMaterial>& materials) : materials_(materials) {}
+
+  /// Transforms and packs a primitive. Drops triangles without area (in exact terms: their doubled area vector is zero
+  /// or not a finite float) and counts them.
+  void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform);
+
+  /// Sorts opaque and alpha-tested triangles apart and spatially, renumbers vertices in order of first use, and
+  /// appends everything to the scene as its next range. The range is empty afterwards.
+  void finish(PreparedScene& scene);
+
+  uint64_t dropped() const { return dropped_; }
+
+ private:
+  bool hasArea(const uint32_t (&v)[3]) const;
+  uint32_t addVertex(const glm::vec3& position, const glm::vec3& normal, const glm::vec4& tangent, const glm::vec2& uv);
+
+  const std::vector<PackedMaterial>& materials_;
+  std::vector<glm::vec3> positions_;
+  std::vector<PackedVertex> vertices_;
+  std::vector<PackedTriangle> triangles_;
+  uint64_t dropped_ = 0;
+};
+
+/// Tangent of a triangle from its texture coordinates: xyz along +U orthogonal to `normal`, w so that
+/// cross(normal, tangent)·w points up the image (towards -V), as glTF's normal maps expect.
+/// Any direction orthogonal to the normal where the coordinates are degenerate.
+glm::vec4 tangentFromUvs(const glm::vec3 (&p)[3], const glm::vec2 (&uv)[3], const glm::vec3& normal);
+
+}  // namespace weir::scene

@@ -1,0 +1,139 @@
+// PNG and JPEG decoding behind guards. The one place where stb_image is compiled.
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_NO_STDIO
+#define STBI_MAX_DIMENSIONS (1 << 20)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+#include <weir/core/error.h>
+#include <weir/scene/gltf_import.h>
+
+#include <atomic>
+#include <memory>
+#include <thread>
+
+namespace weir::scene {
+namespace {
+
+// DEFLATE expands at most 1032-fold; a JPEG of one colour does not do better than that either. A header that promises
+// more texels than its file can hold is refused before anything is allocated.
+constexpr uint64_t kMaxExpansion = 1032;
+// A progressive JPEG passes over the whole picture once a scan; real ones have about ten.
+constexpr int kMaxJpegScans = 64;
+
+bool looksLikeJpeg(std::span<const uint8_t> bytes) {
+  return bytes.size() > 2 && bytes[0] == 0xFF && bytes[1] == 0xD8;
+}
+
+int jpegScans(std::span<const uint8_t> bytes) {
+  int scans = 0;
+  for (size_t i = 0; i + 1 < bytes.size(); ++i) scans += bytes[i] == 0xFF && bytes[i + 1] == 0xDA;
+  return scans;
+}
+
+}  // namespace
+
+bool checkImageHeader(std::span<const uint8_t> bytes, const ImportLimits& limits, uint32_t& width, uint32_t& height,
+                      std::string& reason) {
+  int w = 0, h = 0, channels = 0;
+  if (bytes.size() > 0x7fffffff ||
+      !stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &w, &h, &channels)) {
+    reason = "neither PNG nor JPEG";
+    return false;
+  }
+  if (w < 1 || h < 1 || static_cast<uint32_t>(w) > limits.imageSide || static_cast<uint32_t>(h) > limits.imageSide) {
+    reason =
+        std::to_string(w) + " x " + std::to_string(h) + " texels; sides go up to " + std::to_string(limits.imageSide);
+    return false;
+  }
+  // PNGs go down to one bit a texel.
+  if (static_cast<uint64_t>(w) * h / 8 > kMaxExpansion * bytes.size()) {
+    reason = std::to_string(w) + " x " + std::to_string(h) + " texels can't come from " + std::to_string(bytes.size()) +
+             " bytes";
+    return false;
+  }
+  if (looksLikeJpeg(bytes) && jpegScans(bytes) > kMaxJpegScans) {
+    reason = "a JPEG of more than " + std::to_string(kMaxJpegScans) + " scans";
+    return false;
+  }
+  width = static_cast<uint32_t>(w);
+  height = static_cast<uint32_t>(h);
+  return true;
+}
+
+std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const ImportLimits& limits, std::string& reason) {
+  Image image;
+  if (!checkImageHeader(bytes, limits, image.width, image.height, reason)) return std::nullopt;
+  int w = 0, h = 0, channels = 0;
+  const std::unique_ptr<stbi_uc, void (*)(void*)> texels(
+      stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &w, &h, &channels, 4), stbi_image_free);
+  if (!texels || static_cast<uint32_t>(w) != image.width || static_cast<uint32_t>(h) != image.height) {
+    const char* why = stbi_failure_reason();
+    reason = std::string("can't be decoded") + (why ? std::string(" (") + why + ")" : "");
+    return std::nullopt;
+  }
+  image.rgba.assign(texels.get(), texels.get() + static_cast<size_t>(w) * h * 4);
+  return image;
+}
+
+void importImages(GltfImport& import) {
+  Scene& scene = import.scene;
+  std::vector<char> used(scene.images.size(), 0);
+  for (const Material& material : scene.materials)
+    for (const TextureSlot* slot : {&material.baseColorTexture, &material.metallicRoughnessTexture,
+                                    &material.normalTexture, &material.emissiveTexture})
+      if (*slot) used[scene.textures[slot->texture].image] = 1;
+
+  // Finding bytes may read files and throws; that and the size checks stay on this thread.
+  struct Work {
+    size_t image;
+    std::span<const uint8_t> bytes;
+  };
+  std::vector<Work> work;
+  uint64_t texels = 0;
+  for (size_t i = 0; i < used.size(); ++i) {
+    if (!used[i]) continue;
+    const auto bytes = import.file.image(i);
+    const std::string place = "/images/" + std::to_string(i);
+    std::string reason;
+    uint32_t width = 0, height = 0;
+    if (!checkImageHeader(bytes, import.limits, width, height, reason)) import.file.fail(place, reason);
+    texels += static_cast<uint64_t>(width) * height;
+    if (texels > import.limits.imageTexels)
+      import.file.fail(place, "all images together exceed " + std::to_string(import.limits.imageTexels) + " texels");
+    work.push_back({i, bytes});
+  }
+
+  std::vector<std::string> reasons(work.size());
+  std::atomic<size_t> next{0};
+  const auto decode = [&] {
+    for (size_t i; (i = next++) < work.size();) {
+      try {
+        std::optional<Image> image = decodeImage(work[i].bytes, import.limits, reasons[i]);
+        if (!image) continue;
+        image->name = std::move(scene.images[work[i].image].name);
+        scene.images[work[i].image] = std::move(*image);
+      } catch (const std::exception& e) {
+        reasons[i] = e.what();
+      }
+    }
+  };
+  const size_t threads = std::min<size_t>(std::max(1u, std::thread::hardware_concurrency()), work.size());
+  {
+    std::vector<std::jthread> pool;
+    for (size_t i = 1; i < threads; ++i) pool.emplace_back(decode);
+    decode();
+  }
+  for (size_t i = 0; i < work.size(); ++i)
+    if (!reasons[i].empty()) import.file.fail("/images/" + std::to_string(work[i].image), reasons[i]);
+}
+
+}  // namespace weir::scene

@@ -1,0 +1,78 @@
+// What the importer's parts share. Internal to scene/import.
+#pragma once
+
+#include <weir/scene/gltf_file.h>
+#include <weir/scene/scene.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_FS
+#define TINYGLTF_NO_EXTERNAL_IMAGE
+#define TINYGLTF_NO_INCLUDE_STB_IMAGE
+#define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
+#include <tiny_gltf.h>
+
+namespace weir::scene {
+
+/// State of one import. The parts below fill `scene` in the order: materials, meshes, nodes, images.
+struct GltfImport {
+  GltfFile& file;
+  const tinygltf::Model& model;
+  const ImportLimits& limits;
+  Scene& scene;
+  std::vector<int> materialUvSet;  ///< per material: the UV set that its textures read
+
+  /// Adds a warning unless it was given already.
+  void warn(const std::string& text);
+};
+
+/// The file's structure as tinygltf reads it. It gets neither bytes nor paths nor extras: buffers and images go
+/// through GltfFile's guards instead. Expects a file that passed checkGltfSchema.
+tinygltf::Model parseStructure(const GltfFile& file);
+
+/// One accessor, checked: every element can be read. Sparse substitution included. Values are copied out one
+/// by one, so alignment does not matter.
+class AccessorView {
+ public:
+  AccessorView(GltfImport& import, int accessor);
+
+  uint64_t count() const { return count_; }
+  int components() const { return components_; }
+  int componentType() const { return componentType_; }
+  bool normalized() const { return normalized_; }
+  /// Component c of element i; normalised integers are scaled as glTF 2.0, section 3.6.2.2 says.
+  float value(uint64_t i, int c) const;
+  /// An unsigned scalar.
+  uint32_t index(uint64_t i) const;
+
+ private:
+  const uint8_t* element(uint64_t i) const;
+
+  std::span<const uint8_t> bytes_;  // empty: all zeros
+  uint64_t stride_ = 0, count_ = 0;
+  int components_ = 0, componentType_ = 0;
+  bool normalized_ = false;
+  std::vector<uint32_t> sparseIndices_;  // strictly increasing
+  std::span<const uint8_t> sparseValues_;
+  uint64_t elementSize_ = 0;
+};
+
+void importMaterials(GltfImport& import);
+void importMeshes(GltfImport& import);
+void importNodes(GltfImport& import);
+/// Decodes, on several threads, the images that some material uses; the others stay empty (width 0).
+void importImages(GltfImport& import);
+
+/// Decodes PNG or JPEG to RGBA. The size is read and checked before anything is decoded. On failure `reason` says why.
+std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const ImportLimits& limits, std::string& reason);
+/// Width and height from the header alone, and whether the file's bytes can hold so many texels at all.
+bool checkImageHeader(std::span<const uint8_t> bytes, const ImportLimits& limits, uint32_t& width, uint32_t& height,
+                      std::string& reason);
+
+}  // namespace weir::scene

@@ -1,0 +1,90 @@
+// glTF import, in order: container and JSON, schema, extensions, structure, then the parts of gltf_*.cpp.
+#include <weir/core/error.h>
+#include <weir/scene/gltf_import.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace weir::scene {
+namespace {
+
+constexpr std::array<std::string_view, 3> kImplemented = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
+                                                          "KHR_mesh_quantization"};
+
+bool implemented(const std::string& name) {
+  return std::find(kImplemented.begin(), kImplemented.end(), name) != kImplemented.end();
+}
+
+void checkAsset(const GltfFile& file) {
+  const auto& asset = file.json().at("asset");
+  const std::string version = asset.at("version").get<std::string>();
+  if (!version.starts_with("2.")) file.fail("/asset/version", "glTF " + version.substr(0, 20) + "; only 2.0 is known");
+  const std::string least = asset.value("minVersion", "2.0");
+  if (least != "2.0") file.fail("/asset/minVersion", "needs glTF " + least.substr(0, 20) + "; only 2.0 is known");
+}
+
+void refuseRequiredExtensions(const GltfFile& file) {
+  const auto required = file.json().find("extensionsRequired");
+  if (required == file.json().end()) return;
+  std::string refused;
+  for (const auto& name : *required)
+    if (!implemented(name.get<std::string>())) refused += (refused.empty() ? "" : ", ") + name.get<std::string>();
+  if (!refused.empty()) file.fail("/extensionsRequired", "not implemented: " + refused);
+}
+
+void warnAboutExtensions(GltfImport& import) {
+  const auto used = import.file.json().find("extensionsUsed");
+  if (used == import.file.json().end()) return;
+  for (const auto& name : *used)
+    if (!implemented(name.get<std::string>()))
+      import.warn("extension " + name.get<std::string>() + " is not implemented and ignored");
+}
+
+void warnAboutAnimation(GltfImport& import) {
+  const auto& json = import.file.json();
+  const auto size = [&](const char* key) { return json.contains(key) ? json[key].size() : size_t{0}; };
+  import.scene.animations = static_cast<uint32_t>(size("animations"));
+  if (import.scene.animations) import.warn("animations are not played yet: the scene keeps its rest pose");
+  if (size("meshes") == 0) return;
+  for (const auto& mesh : json["meshes"])
+    for (const auto& primitive : mesh["primitives"])
+      if (primitive.contains("targets") && !primitive["targets"].empty())
+        import.warn("morph targets are not animated yet: meshes keep their rest pose");
+}
+
+}  // namespace
+
+void GltfImport::warn(const std::string& text) {
+  if (std::find(scene.warnings.begin(), scene.warnings.end(), text) != scene.warnings.end()) return;
+  // A file can name as many things as it likes; a user reads so many.
+  if (scene.warnings.size() < 64) scene.warnings.push_back(text);
+}
+
+Scene importGltf(const std::string& path, const ImportLimits& limits) {
+  GltfFile file(path, limits);
+  try {
+    checkGltfSchema(file);
+    checkAsset(file);
+    refuseRequiredExtensions(file);
+    Scene scene;
+    scene.path = path;
+    const tinygltf::Model model = parseStructure(file);
+    GltfImport import{file, model, limits, scene, {}};
+    warnAboutExtensions(import);
+    warnAboutAnimation(import);
+    importMaterials(import);
+    importMeshes(import);
+    importNodes(import);
+    importImages(import);
+    return scene;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw InputError(path + ": needs more memory than there is");
+  } catch (const std::exception& e) {
+    throw InputError(path + ": " + e.what());
+  }
+}
+
+}  // namespace weir::scene

@@ -1,0 +1,130 @@
+#include <weir/scene/gather_lights.h>
+#include <weir/scene/geometry_range.h>
+#include <weir/scene/prepared.h>
+#include <weir/scene/spatial_sort.h>
+
+#include <algorithm>
+
+namespace weir::scene {
+namespace {
+
+// A mesh becomes an instanced range when merging it would make more triangles than this and it is used this often.
+constexpr uint64_t kMergeTriangles = 2'000'000;
+constexpr size_t kMergeUses = 4;
+
+/// Index of the texture as a slot uses it; equal uses share one.
+int32_t prepareTexture(const Scene& scene, const TextureSlot& slot, bool srgb, PreparedScene& prepared) {
+  if (!slot) return -1;
+  const Texture& from = scene.textures[slot.texture];
+  if (from.image < 0 || scene.images[from.image].rgba.empty()) return -1;
+  const PreparedTexture texture{from.image, srgb, from.wrapS, from.wrapT, from.magFilter, from.minFilter};
+  const auto same = [&](const PreparedTexture& t) {
+    return t.image == texture.image && t.srgb == texture.srgb && t.wrapS == texture.wrapS && t.wrapT == texture.wrapT &&
+           t.magFilter == texture.magFilter && t.minFilter == texture.minFilter;
+  };
+  const auto found = std::find_if(prepared.textures.begin(), prepared.textures.end(), same);
+  if (found != prepared.textures.end()) return static_cast<int32_t>(found - prepared.textures.begin());
+  prepared.textures.push_back(texture);
+  return static_cast<int32_t>(prepared.textures.size() - 1);
+}
+
+PackedMaterial packMaterial(const Scene& scene, const Material& from, PreparedScene& prepared) {
+  PackedMaterial m;
+  m.baseColor = from.baseColor;
+  m.emission = from.emission;
+  m.alphaCutoff = from.alphaCutoff;
+  m.metallic = from.metallic;
+  m.roughness = from.roughness;
+  m.normalScale = from.normalScale;
+  m.flags = (from.alphaMode == AlphaMode::Mask ? kMaterialMask : 0u) |
+            (from.alphaMode == AlphaMode::Blend ? kMaterialBlend : 0u) |
+            (from.doubleSided ? kMaterialDoubleSided : 0u) | (from.isEmissive() ? kMaterialEmissive : 0u);
+  m.baseColorTexture = prepareTexture(scene, from.baseColorTexture, true, prepared);
+  m.metallicRoughnessTexture = prepareTexture(scene, from.metallicRoughnessTexture, false, prepared);
+  m.normalTexture = prepareTexture(scene, from.normalTexture, false, prepared);
+  m.emissiveTexture = from.isEmissive() ? prepareTexture(scene, from.emissiveTexture, true, prepared) : -1;
+  return m;
+}
+
+/// The importer's -1 is the default material, which is packed last.
+uint32_t packedIndex(const PreparedScene& prepared, const Primitive& primitive) {
+  return primitive.material >= 0 ? static_cast<uint32_t>(primitive.material)
+                                 : static_cast<uint32_t>(prepared.materials.size() - 1);
+}
+
+bool isInstanced(const Scene& scene, const Mesh& mesh, size_t uses) {
+  uint64_t triangles = 0;
+  for (const Primitive& primitive : mesh.primitives) {
+    triangles += primitive.indices.size() / 3;
+    if (primitive.material >= 0 && scene.materials[primitive.material].isEmissive()) return false;
+  }
+  return uses >= kMergeUses && uses * triangles > kMergeTriangles;
+}
+
+Bounds rangeBounds(const PreparedScene& prepared, const TriangleRange& range, const glm::dmat4& toWorld) {
+  Bounds bounds;
+  for (uint32_t t = range.first; t < range.first + range.opaque + range.masked; ++t)
+    for (uint32_t v : prepared.triangles[t].v)
+      bounds.add(glm::vec3(toWorld * glm::dvec4(glm::dvec3(prepared.positions[v]), 1.0)));
+  return bounds;
+}
+
+void placeInstances(const std::vector<PreparedInstance>& unsorted, PreparedScene& prepared) {
+  std::vector<SortItem> items;
+  for (const PreparedInstance& instance : unsorted) {
+    const Bounds bounds = rangeBounds(prepared, prepared.ranges[instance.range], glm::dmat4(instance.toWorld));
+    if (bounds.empty) continue;
+    items.push_back({bounds.low, bounds.high, static_cast<uint32_t>(&instance - unsorted.data())});
+    prepared.bounds.add(bounds.low);
+    prepared.bounds.add(bounds.high);
+  }
+  spatialSort(items);
+  for (const SortItem& item : items) prepared.instances.push_back(unsorted[item.index]);
+}
+
+}  // namespace
+
+PreparedScene prepareScene(const Scene& scene) {
+  PreparedScene prepared;
+  for (const Material& material : scene.materials)
+    prepared.materials.push_back(packMaterial(scene, material, prepared));
+  prepared.materials.push_back(packMaterial(scene, Material{}, prepared));
+
+  std::vector<size_t> uses(scene.meshes.size(), 0);
+  for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+  std::vector<char> instanced(scene.meshes.size(), 0);
+  for (size_t m = 0; m < scene.meshes.size(); ++m) instanced[m] = isInstanced(scene, scene.meshes[m], uses[m]);
+
+  GeometryRange merged(prepared.materials);
+  for (const Instance& instance : scene.instances)
+    if (!instanced[instance.mesh])
+      for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
+        merged.add(primitive, packedIndex(prepared, primitive), glm::dmat4(instance.toWorld));
+  merged.finish(prepared);
+  const TriangleRange& statics = prepared.ranges[0];
+  if (statics.opaque + statics.masked > 0) {
+    prepared.instances.push_back({0, glm::mat4(1.0f), false});
+    prepared.bounds = rangeBounds(prepared, statics, glm::dmat4(1.0));
+  }
+
+  std::vector<uint32_t> rangeOf(scene.meshes.size(), 0);
+  std::vector<PreparedInstance> shared;
+  for (const Instance& instance : scene.instances) {
+    if (!instanced[instance.mesh]) continue;
+    uint32_t& range = rangeOf[instance.mesh];
+    if (range == 0) {
+      range = static_cast<uint32_t>(prepared.ranges.size());
+      GeometryRange own(prepared.materials);
+      for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
+        own.add(primitive, packedIndex(prepared, primitive), glm::dmat4(1.0));
+      own.finish(prepared);
+    }
+    shared.push_back({range, instance.toWorld, glm::determinant(glm::dmat3(glm::dmat4(instance.toWorld))) < 0.0});
+  }
+  placeInstances(shared, prepared);
+
+  gatherLights(scene, prepared);
+  return prepared;
+}
+
+}  // namespace weir::scene

@@ -1,0 +1,189 @@
+#include <weir/scene/upload.h>
+
+#include <algorithm>
+#include <map>
+#include <span>
+#include <tuple>
+
+namespace weir::scene {
+namespace {
+
+constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+constexpr uint32_t kMostSets = 64;  // executors over one scene at a time
+
+VkSamplerAddressMode addressMode(Wrap wrap) {
+  switch (wrap) {
+    case Wrap::MirroredRepeat: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    case Wrap::ClampToEdge: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    default: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  }
+}
+
+VkFilter filter(Filter f) { return f == Filter::Nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR; }
+
+std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vector<uint32_t>& drawn) {
+  std::vector<GpuInstance> result;
+  uint32_t first = 0;
+  for (const PreparedInstance& source : prepared.instances) {
+    const TriangleRange& range = prepared.ranges[source.range];
+    GpuInstance g;
+    for (int c = 0; c < 4; ++c) g.columns[c] = source.toWorld[c];
+    g.firstTriangle = range.first;
+    g.opaqueTriangles = range.opaque;
+    g.flipsWinding = source.flipsWinding ? 1 : 0;
+    g.firstDrawn = first;
+    drawn.push_back(range.opaque + range.masked);
+    first += drawn.back();
+    result.push_back(g);
+  }
+  return result;
+}
+
+}  // namespace
+
+SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const PreparedScene& prepared, bool withAcceleration)
+    : device_(&device), withAcceleration_(withAcceleration) {
+  const VkBufferUsageFlags build = withAcceleration ? VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                                                          VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT
+                                                    : 0;
+  positions_ = gpu::uploadBuffer(device, prepared.positions, kStorage | build, "scene positions");
+  vertices_ = gpu::uploadBuffer(device, prepared.vertices, kStorage, "scene vertices");
+  triangles_ = gpu::uploadBuffer(device, prepared.triangles, kStorage, "scene triangles");
+  instances_ = gpu::uploadBuffer(device, packInstances(prepared, drawnTriangles), kStorage, "scene instances");
+  materials_ = gpu::uploadBuffer(device, prepared.materials, kStorage, "scene materials");
+  lights_ = gpu::uploadBuffer(device, prepared.lights, kStorage, "scene lights");
+  alias_ = gpu::uploadBuffer(device, prepared.aliasTable, kStorage, "scene alias table");
+  uploadTextures(scene, prepared);
+  if (withAcceleration) acceleration_ = trace::Acceleration(device, prepared, positions_);
+  makeLayout();
+
+  lightCount = static_cast<uint32_t>(prepared.lights.size());
+  instanceCount = static_cast<uint32_t>(prepared.instances.size());
+  Bounds bounds = prepared.bounds;
+  for (const PunctualLight& light : scene.lights) {
+    if (light.kind != LightKind::Directional) bounds.add(light.position);
+  }
+  diameter = std::max(2.0f * bounds.radius(), glm::length(bounds.centre()) * 0x1p-20f);
+}
+
+SceneGpu::~SceneGpu() {
+  for (VkSampler sampler : samplers_) vkDestroySampler(device_->handle(), sampler, nullptr);
+  vkDestroyDescriptorPool(device_->handle(), pool_, nullptr);
+  vkDestroyDescriptorSetLayout(device_->handle(), layout_, nullptr);
+}
+
+uint64_t SceneGpu::bytes() const {
+  uint64_t sum = acceleration_.bytes();
+  for (const gpu::Buffer* b : {&positions_, &vertices_, &triangles_, &instances_, &materials_, &lights_, &alias_}) {
+    sum += b->size();
+  }
+  for (const gpu::Image& image : images_) sum += image.bytes();
+  return sum;
+}
+
+void SceneGpu::uploadTextures(const Scene& scene, const PreparedScene& prepared) {
+  std::map<std::pair<int, bool>, uint32_t> imageIndex;
+  std::map<std::tuple<Wrap, Wrap, Filter, Filter>, VkSampler> samplerOf;
+  const Image white{"white", 1, 1, {255, 255, 255, 255}};
+  auto add = [&](const PreparedTexture& t) {
+    const auto [entry, fresh] = imageIndex.try_emplace({t.image, t.srgb}, static_cast<uint32_t>(images_.size()));
+    if (fresh) {
+      const Image& source = t.image < 0 ? white : scene.images[t.image];
+      gpu::ImageDesc desc;
+      desc.width = source.width;
+      desc.height = source.height;
+      desc.format = t.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+      images_.push_back(gpu::uploadImage(*device_, desc, std::as_bytes(std::span(source.rgba)), "texture " + source.name));
+    }
+    VkSampler& sampler = samplerOf[{t.wrapS, t.wrapT, t.magFilter, t.minFilter}];
+    if (sampler == VK_NULL_HANDLE) {
+      VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+      info.magFilter = filter(t.magFilter);
+      info.minFilter = filter(t.minFilter);
+      info.addressModeU = addressMode(t.wrapS);
+      info.addressModeV = addressMode(t.wrapT);
+      info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+      info.maxLod = VK_LOD_CLAMP_NONE;
+      gpu::check(vkCreateSampler(device_->handle(), &info, nullptr, &sampler), "vkCreateSampler");
+      samplers_.push_back(sampler);
+    }
+    textures_.push_back({entry->second, sampler});
+  };
+  for (const PreparedTexture& t : prepared.textures) add(t);
+  if (textures_.empty()) add(PreparedTexture{});  // so that the array is never empty
+}
+
+void SceneGpu::makeLayout() {
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  auto bind = [&](uint32_t binding, VkDescriptorType type, uint32_t count) {
+    bindings.push_back({binding, type, count, VK_SHADER_STAGE_ALL, nullptr});
+  };
+  bind(kBindFrame, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1);
+  for (uint32_t b = kBindPositions; b <= kBindRays; ++b) bind(b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1);
+  if (withAcceleration_) bind(kBindAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1);
+  bind(kBindTextures, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textureCount());
+  VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+  info.bindingCount = static_cast<uint32_t>(bindings.size());
+  info.pBindings = bindings.data();
+  gpu::check(vkCreateDescriptorSetLayout(device_->handle(), &info, nullptr, &layout_), "vkCreateDescriptorSetLayout");
+
+  std::vector<VkDescriptorPoolSize> sizes = {
+      {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, kMostSets},
+      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostSets * (kBindRays - kBindPositions + 1)},
+      {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kMostSets * textureCount()}};
+  if (withAcceleration_) sizes.push_back({VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kMostSets});
+  VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+  pool.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
+  pool.maxSets = kMostSets;
+  pool.poolSizeCount = static_cast<uint32_t>(sizes.size());
+  pool.pPoolSizes = sizes.data();
+  gpu::check(vkCreateDescriptorPool(device_->handle(), &pool, nullptr, &pool_), "vkCreateDescriptorPool");
+}
+
+VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t slotBytes,
+                                  const gpu::Buffer& rayCounter) const {
+  VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+  allocate.descriptorPool = pool_;
+  allocate.descriptorSetCount = 1;
+  allocate.pSetLayouts = &layout_;
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  gpu::check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set), "vkAllocateDescriptorSets");
+
+  const VkDescriptorBufferInfo frame{frameConstants.handle(), 0, slotBytes};
+  const std::array<VkBuffer, 8> handles = {positions_.handle(), vertices_.handle(),  triangles_.handle(), instances_.handle(),
+                                           materials_.handle(), lights_.handle(),    alias_.handle(),     rayCounter.handle()};
+  std::array<VkDescriptorBufferInfo, 8> buffers{};
+  std::vector<VkWriteDescriptorSet> writes;
+  auto write = [&](uint32_t binding, VkDescriptorType type, uint32_t count) -> VkWriteDescriptorSet& {
+    VkWriteDescriptorSet w{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+    w.dstSet = set;
+    w.dstBinding = binding;
+    w.descriptorType = type;
+    w.descriptorCount = count;
+    writes.push_back(w);
+    return writes.back();
+  };
+  write(kBindFrame, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1).pBufferInfo = &frame;
+  for (uint32_t i = 0; i < handles.size(); ++i) {
+    buffers[i] = {handles[i], 0, VK_WHOLE_SIZE};
+    write(kBindPositions + i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1).pBufferInfo = &buffers[i];
+  }
+  VkAccelerationStructureKHR top = acceleration_.top();
+  VkWriteDescriptorSetAccelerationStructureKHR acceleration{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR};
+  acceleration.accelerationStructureCount = 1;
+  acceleration.pAccelerationStructures = &top;
+  if (withAcceleration_) write(kBindAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1).pNext = &acceleration;
+  std::vector<VkDescriptorImageInfo> images;
+  for (const Texture& t : textures_) {
+    images.push_back({t.sampler, images_[t.image].view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+  }
+  write(kBindTextures, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textureCount()).pImageInfo = images.data();
+  vkUpdateDescriptorSets(device_->handle(), static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
+  return set;
+}
+
+void SceneGpu::freeSet(VkDescriptorSet set) const {
+  if (set != VK_NULL_HANDLE) vkFreeDescriptorSets(device_->handle(), pool_, 1, &set);
+}
+
+}  // namespace weir::scene

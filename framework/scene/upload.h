@@ -1,0 +1,77 @@
+// A prepared scene on the device: buffers, textures, acceleration structures, and the descriptor set 0 that every kernel shares.
+#pragma once
+
+#include <weir/gpu/memory.h>
+#include <weir/scene/prepared.h>
+#include <weir/trace/acceleration.h>
+
+#include <array>
+#include <vector>
+
+namespace weir::scene {
+
+/// Binding numbers in set 0, as the generated prelude declares them.
+enum SceneBinding : uint32_t {
+  kBindFrame = 0,
+  kBindPositions,
+  kBindVertices,
+  kBindTriangles,
+  kBindInstances,
+  kBindMaterials,
+  kBindLights,
+  kBindAlias,
+  kBindRays,          ///< ray counter
+  kBindAcceleration,  ///< only on devices with acceleration structures
+  kBindTextures,      ///< last: an array of as many as the scene has
+};
+
+/// An instance as shaders read it, 80 bytes.
+struct GpuInstance {
+  glm::vec4 columns[4];
+  uint32_t firstTriangle = 0, opaqueTriangles = 0, flipsWinding = 0;
+  uint32_t firstDrawn = 0;  ///< number of triangles in the instances before it
+};
+static_assert(sizeof(GpuInstance) == 80);
+
+class SceneGpu {
+ public:
+  /// Uploads and builds everything, and waits.
+  SceneGpu(const gpu::Device& device, const Scene& scene, const PreparedScene& prepared, bool withAcceleration);
+  ~SceneGpu();
+  SceneGpu(const SceneGpu&) = delete;
+  SceneGpu& operator=(const SceneGpu&) = delete;
+
+  VkDescriptorSetLayout layout() const { return layout_; }
+  /// A set over this scene, the given frame constants (dynamic offset, `slotBytes` visible) and ray counter.
+  VkDescriptorSet makeSet(const gpu::Buffer& frameConstants, uint64_t slotBytes, const gpu::Buffer& rayCounter) const;
+  void freeSet(VkDescriptorSet set) const;
+
+  uint64_t bytes() const;
+  uint32_t textureCount() const { return static_cast<uint32_t>(textures_.size()); }
+  bool hasAcceleration() const { return withAcceleration_; }
+
+  // What the frame constants say of the scene.
+  uint32_t lightCount = 0, instanceCount = 0;
+  float diameter = 0.0f;               ///< of the bounding sphere, metres; at least twice the float error of its place
+  std::vector<uint32_t> drawnTriangles;  ///< per instance, for raster draws
+
+ private:
+  void uploadTextures(const Scene& scene, const PreparedScene& prepared);
+  void makeLayout();
+
+  const gpu::Device* device_;
+  bool withAcceleration_;
+  gpu::Buffer positions_, vertices_, triangles_, instances_, materials_, lights_, alias_;
+  struct Texture {
+    uint32_t image;
+    VkSampler sampler;
+  };
+  std::vector<gpu::Image> images_;
+  std::vector<VkSampler> samplers_;
+  std::vector<Texture> textures_;
+  trace::Acceleration acceleration_;
+  VkDescriptorSetLayout layout_ = VK_NULL_HANDLE;
+  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+};
+
+}  // namespace weir::scene

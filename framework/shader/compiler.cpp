@@ -1,0 +1,48 @@
+#include <weir/core/cache_folder.h>
+#include <weir/shader/compiler.h>
+#include <weir/shader/digest.h>
+#include <weir/shader/sources.h>
+
+#include <algorithm>
+
+namespace weir::shader {
+namespace {
+
+size_t countFound(const Sources& sources) {
+  return std::ranges::count_if(sources.files(), [](const auto& entry) { return entry.second != nullptr; });
+}
+
+/// Those on disk: a virtual file can't be watched.
+std::vector<std::string> filesOnDisk(const Sources& sources) {
+  std::vector<std::string> paths;
+  for (const auto& [path, file] : sources.files()) {
+    if (file && !file->isVirtual) paths.push_back(path);
+  }
+  return paths;
+}
+
+}  // namespace
+
+Compiler::Compiler(std::string cacheFolder) : cacheFolder_(weir::cacheFolder(cacheFolder)) {}
+
+Module Compiler::compile(const CompileRequest& request) {
+  Sources sources(request);
+  sources.followAll();
+  const size_t followed = countFound(sources);
+  const Digest key = digestOf(request, sources);
+  Module module;
+  module.files = filesOnDisk(sources);
+  if (!cacheFolder_.empty()) {
+    module.spirv = readCached(cacheFolder_, key);
+    module.fromCache = !module.spirv.empty();
+    if (module.fromCache) return module;
+  }
+  module.spirv = compileToSpirv(request, sources);
+  module.files = filesOnDisk(sources);
+  // The scanner reads #include lines as they are commonly written. Where glslang found a file that it did not, the key
+  // doesn't cover that file, so the result is used but not kept.
+  if (!cacheFolder_.empty() && countFound(sources) == followed) writeCached(cacheFolder_, key, module.spirv);
+  return module;
+}
+
+}  // namespace weir::shader

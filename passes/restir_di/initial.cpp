@@ -1,0 +1,23 @@
+#include "common/layouts.h"
+#include "restir_di/restir_di.h"
+
+namespace weir::passes {
+
+void Initial::describe(PassDescription& d) {
+  d.doc("Light candidates by power, resampled into each pixel's reservoirs (RIS)");
+  d.input("surface", perPixel<PackedSurface>());
+  d.output("reservoirs", perPixel<Reservoir>()).times("samples").doc("One or more reservoirs a pixel");
+  d.param("candidates", 32).range(1, 1024).doc("Lights that each pixel looks at");
+  d.param("samples", 1).range(1, 4).doc("Reservoirs a pixel; they share the candidates");
+  d.param("visibility", true).specialises().doc("Shoot a shadow ray to each chosen sample: hidden ones are not passed on");
+  d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
+  d.needs(Need::FrameCamera).needs(Need::FrameIndex);
+}
+
+void Initial::prepare(PrepareContext& c) {
+  kernel_ = c.boolean("visibility") ? c.rayKernel("initial.glsl") : c.kernel("initial.glsl");
+}
+
+void Initial::record(RecordContext& c) { c.launch(kernel_); }
+
+}  // namespace weir::passes

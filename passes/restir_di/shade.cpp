@@ -1,0 +1,23 @@
+#include "common/layouts.h"
+#include "restir_di/restir_di.h"
+
+namespace weir::passes {
+
+void Shade::describe(PassDescription& d) {
+  d.doc("Turns reservoirs into radiance: the mean over a pixel's samples, and what the surface itself emits");
+  d.input("surface", perPixel<PackedSurface>());
+  d.input("emission", storageImage(Format::RGBA32F));
+  d.input("reservoirs", perPixel<Reservoir>()).anyCount();
+  d.output("color", storageImage(Format::RGBA32F)).radiance();
+  d.param("visibility", true).specialises().doc("Shoot the final shadow ray; without it, light goes through walls");
+  d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
+  d.needs(Need::FrameCamera);
+}
+
+void Shade::prepare(PrepareContext& c) {
+  kernel_ = c.boolean("visibility") ? c.rayKernel("shade.glsl", {.defines = {{"FINAL_VISIBILITY", "1"}}}) : c.kernel("shade.glsl");
+}
+
+void Shade::record(RecordContext& c) { c.launch(kernel_); }
+
+}  // namespace weir::passes

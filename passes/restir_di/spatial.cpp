@@ -1,0 +1,54 @@
+#include "common/layouts.h"
+#include "restir_di/restir_di.h"
+
+namespace weir::passes {
+
+void describeReuse(PassDescription& d) {
+  d.param("mis", "pairwise").oneOf({"biased", "pairwise"}).specialises().doc(
+      "MIS weights: biased (by confidence alone, darkens at edges) or defensive pairwise");
+  d.param("visibilityRays", false).specialises().doc(
+      "Include visibility in the MIS weights and retest the survivor: unbiased with mis=pairwise");
+  d.param("depthThreshold", 0.1f).range(0, 10).doc("Greatest difference of distance, relative to the distance");
+  d.param("normalThreshold", 25.0f).range(0, 180).unit("degrees").doc("Greatest angle between shading normals");
+  d.param("albedoThreshold", 1.0f).range(0, 1).doc("Greatest difference of diffuse albedo in any channel; 1 accepts all");
+}
+
+Kernel reuseKernel(PrepareContext& c, const char* file, KernelOptions options) {
+  if (!c.boolean("visibilityRays")) return c.kernel(file, options);
+  options.defines.emplace_back("VISIBILITY_RAYS", "1");
+  return c.rayKernel(file, options);
+}
+
+void Spatial::describe(PassDescription& d) {
+  d.doc("Merges each pixel's reservoirs with those of pixels around it");
+  d.input("surface", perPixel<PackedSurface>());
+  d.input("reservoirs", perPixel<Reservoir>()).anyCount();
+  d.output("reservoirs", perPixel<Reservoir>()).countOf("reservoirs").passesThrough("reservoirs");
+  d.param("iterations", 1).range(1, 4).doc("How often; each works on what the one before it left");
+  d.param("neighbours", 4).range(1, 16).doc("Pixels that are tried in each iteration");
+  d.param("radius", 30.0f).range(1, 1024).unit("px").doc("They lie uniformly in a disc of this radius");
+  describeReuse(d);
+  d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
+  d.needs(Need::FrameCamera).needs(Need::FrameIndex);
+}
+
+void Spatial::prepare(PrepareContext& c) {
+  // input → a → b → … → output: two buffers of our own are enough for any number of iterations.
+  const int iterations = c.integer("iterations");
+  PortType type = perPixel<Reservoir>();
+  type.perPixelFromInput = "reservoirs";
+  const char* buffers[] = {"a", "b"};
+  for (int i = 0; i < 2 && i + 1 < iterations; ++i) c.scratch(buffers[i], type);
+  for (int i = 0; i < iterations; ++i) {
+    KernelOptions options;
+    if (i > 0) options.bind.emplace_back("in_reservoirs", std::string("scratch_") + buffers[(i - 1) % 2]);
+    if (i + 1 < iterations) options.bind.emplace_back("out_reservoirs", std::string("scratch_") + buffers[i % 2]);
+    kernels_[i] = reuseKernel(c, "spatial.glsl", options);
+  }
+}
+
+void Spatial::record(RecordContext& c) {
+  for (int i = 0; i < c.integer("iterations"); ++i) c.launch(kernels_[i], static_cast<uint32_t>(i));
+}
+
+}  // namespace weir::passes

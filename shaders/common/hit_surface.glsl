@@ -1,0 +1,88 @@
+// From a hit to the packed surface: interpolation, textures, normal map, glTF's material model.
+#ifndef WEIR_HIT_SURFACE
+#define WEIR_HIT_SURFACE
+
+#include "scene.glsl"
+#include "surface.glsl"
+#include "trace_types.glsl"
+
+// Keeps a shading normal from facing away from the viewer: mirrored at the plane across the view direction.
+vec3 facingNormal(vec3 n, vec3 view) {
+  const float d = dot(n, view);
+  return d < 0.0 ? normalize(n - 2.0 * d * view) : n;
+}
+
+struct HitSurface {
+  PackedSurface surface;
+  vec3 emission;  // nit, towards the viewer
+  vec3 position;
+};
+
+// `jitter` 0 … 254 a side: where in its pixel the ray was shot (127: the centre).
+HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter) {
+  const uvec4 t = sceneTriangles[hit.triangle];
+  const Instance instance = sceneInstances[hit.instance];
+  const Material m = sceneMaterials[t.w];
+  const vec3 b = vec3(1.0 - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics);
+  const mat4x3 world = toWorld(instance);
+  const vec3 p0 = world * vec4(vertexPosition(t.x), 1.0);
+  const vec3 p1 = world * vec4(vertexPosition(t.y), 1.0);
+  const vec3 p2 = world * vec4(vertexPosition(t.z), 1.0);
+
+  HitSurface r;
+  r.position = b.x * p0 + b.y * p1 + b.z * p2;
+  vec3 geometric = normalize(cross(p1 - p0, p2 - p0));
+  if (instance.flipsWinding != 0u) geometric = -geometric;
+  const bool front = dot(geometric, direction) < 0.0;
+  const float side = front ? 1.0 : -1.0;
+
+  // Normals transform by the cofactor matrix, tangents by the matrix itself.
+  const mat3 linear = mat3(world[0], world[1], world[2]);
+  const float mirror = instance.flipsWinding != 0u ? -1.0 : 1.0;
+  const mat3 cofactor =
+      mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1])) * mirror;
+  const Vertex v0 = sceneVertices[t.x], v1 = sceneVertices[t.y], v2 = sceneVertices[t.z];
+  vec3 n = cofactor * (b.x * unpackNormal(v0.normal) + b.y * unpackNormal(v1.normal) + b.z * unpackNormal(v2.normal));
+  n = dot(n, n) > 0.0 ? normalize(n) : geometric;
+  const vec2 uv = b.x * v0.uv + b.y * v1.uv + b.z * v2.uv;
+  if (m.normalTexture >= 0) {
+    const vec4 t0 = unpackTangent(v0.tangent), t1 = unpackTangent(v1.tangent), t2 = unpackTangent(v2.tangent);
+    vec3 tangent = linear * (b.x * t0.xyz + b.y * t1.xyz + b.z * t2.xyz);
+    tangent -= n * dot(n, tangent);
+    if (dot(tangent, tangent) > 0.0) {
+      tangent = normalize(tangent);
+      const vec3 bitangent = cross(n, tangent) * (t0.w * mirror);
+      vec3 mapped = sampleTexture(m.normalTexture, uv).xyz * 2.0 - 1.0;
+      mapped.xy *= m.normalScale;
+      const vec3 bent = tangent * mapped.x + bitangent * mapped.y + n * mapped.z;
+      if (dot(bent, bent) > 0.0) n = normalize(bent);
+    }
+  }
+
+  vec4 base = m.baseColor;
+  if (m.baseColorTexture >= 0) base *= sampleTexture(m.baseColorTexture, uv);
+  float metallic = m.metallic, roughness = m.roughness;
+  if (m.metallicRoughnessTexture >= 0) {
+    const vec4 mr = sampleTexture(m.metallicRoughnessTexture, uv);
+    roughness *= mr.g;
+    metallic *= mr.b;
+  }
+  r.emission = vec3(0.0);
+  if ((m.flags & kMaterialEmissive) != 0u && (front || (m.flags & kMaterialDoubleSided) != 0u)) {
+    r.emission = m.emission;
+    if (m.emissiveTexture >= 0) r.emission *= sampleTexture(m.emissiveTexture, uv).rgb;
+  }
+
+  const vec3 view = -direction;
+  r.surface.distance = length(r.position - origin);
+  r.surface.geometricNormal = packNormal(geometric * side);
+  r.surface.shadingNormal = packNormal(facingNormal(n * side, view));
+  r.surface.diffuse = packAlbedo(base.rgb * (1.0 - metallic));
+  r.surface.specular = packAlbedo(mix(vec3(0.04), base.rgb, metallic));
+  r.surface.roughnessJitter = jitter.x | (jitter.y << 8u) | (uint(clamp(roughness, 0.0, 1.0) * 65535.0 + 0.5) << 16u);
+  return r;
+}
+
+PackedSurface noSurface() { return PackedSurface(0.0, 0u, 0u, 0u, 0u, 0x7f7fu); }
+
+#endif

@@ -1,0 +1,92 @@
+// Lights: one table of triangles and punctual lights (framework/scene/lights.h). A sample is a light and a point on it, two 16-bit
+// numbers, so that it is the same point wherever a reservoir carries it.
+#ifndef WEIR_LIGHTS
+#define WEIR_LIGHTS
+
+#include "scene.glsl"
+#include "surface.glsl"
+
+const uint kPoint = 0u, kSpot = 1u, kDirectional = 2u, kTriangle = 3u;
+const uint kKindMask = 0xffu, kLightDoubleSided = 1u << 8, kLightTextured = 1u << 9;
+
+// A point on a light as seen from a surface.
+struct LightSample {
+  vec3 direction;  // unit, towards the light
+  vec3 radiance;   // what arrives, times the geometry term: per area for triangles, per light for the rest
+  vec3 target;     // the point; for directional lights one far beyond the scene
+  float area;      // m², 1 for punctual lights: the sample's density is pdf of the light / area
+};
+
+uint lightCount() { return uint(sceneLightCount); }
+
+// Picks a light by power. `u` uniform in [0,1), its remainder decides within the cell.
+uint pickLight(float u, float v) {
+  const uint n = lightCount();
+  const uint cell = min(uint(u * float(n)), n - 1u);
+  return v < sceneAlias[cell].threshold ? cell : sceneAlias[cell].alias;
+}
+
+// 32-bit place on a light from two uniform numbers.
+uint packPlace(vec2 u) { return uint(u.x * 65536.0) | (uint(u.y * 65536.0) << 16u); }
+
+// Uniform over the triangle (Osada et al. 2002): barycentrics of vertices 1 and 2.
+vec2 placeOnTriangle(uint place) {
+  const vec2 u = (vec2(place & 0xffffu, place >> 16u) + 0.5) / 65536.0;
+  const float root = sqrt(u.x);
+  return vec2(root * (1.0 - u.y), root * u.y);
+}
+
+LightSample evaluateTriangle(Light light, vec2 barycentrics, vec3 position) {
+  LightSample s;
+  const vec3 normalArea = cross(light.a, light.b);  // length = 2 · area
+  s.target = light.position + barycentrics.x * light.a + barycentrics.y * light.b;
+  s.area = light.area;
+  const vec3 d = s.target - position;
+  const float d2 = dot(d, d);
+  s.direction = d * inversesqrt(d2);
+  float cosine = -dot(normalArea, s.direction) / (2.0 * light.area);
+  if ((light.kind & kLightDoubleSided) != 0u) cosine = abs(cosine);
+  if (!(cosine > 0.0) || !(d2 > 0.0)) {
+    s.radiance = vec3(0.0);
+    return s;
+  }
+  s.radiance = light.radiance * (cosine / d2);
+  if ((light.kind & kLightTextured) != 0u) s.radiance *= emissionTexture(light.triangle, barycentrics);
+  return s;
+}
+
+LightSample evaluatePunctual(Light light, vec3 position) {
+  LightSample s;
+  s.area = 1.0;
+  const uint kind = light.kind & kKindMask;
+  if (kind == kDirectional) {
+    s.direction = -light.a;
+    s.target = position + s.direction * sceneDiameter;
+    s.radiance = light.radiance;
+    return s;
+  }
+  const vec3 d = light.position - position;
+  const float d2 = dot(d, d);
+  s.target = light.position;
+  s.direction = d * inversesqrt(d2);
+  // KHR_lights_punctual's recommended window: 1 at the light, 0 at its range.
+  float attenuation = 1.0 / d2;
+  if (light.b.z > 0.0) {
+    const float q = d2 / (light.b.z * light.b.z);
+    attenuation *= clamp(1.0 - q * q, 0.0, 1.0);
+  }
+  if (kind == kSpot) {
+    const float t = clamp((dot(-s.direction, light.a) - light.b.y) * light.b.x, 0.0, 1.0);
+    attenuation *= t * t;
+  }
+  s.radiance = d2 > 0.0 ? light.radiance * attenuation : vec3(0.0);
+  return s;
+}
+
+LightSample evaluateLight(uint index, uint place, vec3 position) {
+  const Light light = sceneLights[index];
+  if ((light.kind & kKindMask) == kTriangle) return evaluateTriangle(light, placeOnTriangle(place), position);
+  return evaluatePunctual(light, position);
+}
+
+#endif

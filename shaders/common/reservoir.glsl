@@ -1,0 +1,81 @@
+// Reservoirs of light samples and the target function. Bitterli et al. 2020 (ReSTIR), Lin et al. 2022 (GRIS): W is the unbiased
+// contribution weight, c the confidence. The struct Reservoir is generated from passes/common/layouts.h.
+#ifndef WEIR_RESERVOIR
+#define WEIR_RESERVOIR
+
+#include "bsdf.glsl"
+#include "lights.glsl"
+#include "visibility.glsl"
+
+// Set when a shadow ray from the reservoir's own pixel found its sample wholly visible.
+const uint kSeen = 0x80000000u;
+
+uint lightOf(Reservoir r) { return r.light & ~kSeen; }
+bool isSeen(Reservoir r) { return (r.light & kSeen) != 0u; }
+bool isNull(Reservoir r) { return !(r.weight > 0.0); }
+
+Reservoir emptyReservoir() { return Reservoir(0u, 0u, 0.0, 0.0); }
+
+// A reservoir that came from outside: whatever is not a finite, valid sample becomes a null sample, so that one bad value
+// can't spread.
+Reservoir sanitized(Reservoir r) {
+  if (!(r.confidence > 0.0) || isinf(r.confidence)) return emptyReservoir();
+  if (!(r.weight > 0.0) || isinf(r.weight) || lightOf(r) >= lightCount()) {
+    r.weight = 0.0;
+    r.light = 0u;
+  }
+  return r;
+}
+
+// Light that the sample sends to the viewer by way of the surface, unshadowed: BSDF · cosine · radiance · geometry term.
+vec3 unshadowed(Surface s, LightSample light) {
+  if (light.radiance == vec3(0.0)) return vec3(0.0);
+  return bsdfCos(s, light.direction) * light.radiance;
+}
+
+// p̂: luminance of the unshadowed contribution.
+float targetFunction(Surface s, LightSample light) { return luminance(unshadowed(s, light)); }
+
+// Streaming weighted choice with the sum of weights. The caller's `u` is uniform in [0, 1).
+struct Selection {
+  uint light, place;
+  float target;  // p̂ of the chosen sample at the merging pixel
+  float sum;     // Σ w
+  bool seen;     // the chosen one is known to be visible there
+};
+
+Selection noSelection() { return Selection(0u, 0u, 0.0, 0.0, false); }
+
+void offer(inout Selection s, uint light, uint place, float target, float weight, bool seen, float u) {
+  if (!(weight > 0.0) || isinf(weight)) return;
+  s.sum += weight;
+  if (u * s.sum < weight) {
+    s.light = light;
+    s.place = place;
+    s.target = target;
+    s.seen = seen;
+  }
+}
+
+Reservoir finish(Selection s, float confidence) {
+  if (!(s.sum > 0.0)) return Reservoir(0u, 0u, 0.0, confidence);
+  const float weight = s.sum / s.target;
+  if (isinf(weight)) return Reservoir(0u, 0u, 0.0, confidence);
+  return Reservoir(s.light | (s.seen ? kSeen : 0u), s.place, weight, confidence);
+}
+
+#ifdef CAN_TRACE
+// Shoots the shadow ray of a reservoir's own sample: a hidden one becomes a null sample (its W · f is zero either way).
+void testVisibility(inout Reservoir r, Surface s) {
+  if (isNull(r) || isSeen(r)) return;
+  const float through = traceVisibility(s, evaluateLight(r.light, r.place, s.position));
+  if (through <= 0.0) {
+    r.light = 0u;
+    r.weight = 0.0;
+  } else if (through >= 1.0) {
+    r.light |= kSeen;
+  }
+}
+#endif
+
+#endif

@@ -1,0 +1,54 @@
+// The first visible surface of a pixel, 24 bytes, and what it unpacks to. The struct PackedSurface itself is generated from
+// passes/common/layouts.h.
+#ifndef WEIR_SURFACE
+#define WEIR_SURFACE
+
+#include "camera.glsl"
+#include "packing.glsl"
+
+struct Surface {
+  vec3 position;
+  vec3 geometricNormal;  // faces the viewer
+  vec3 normal;           // shading normal, never faces away from the viewer
+  vec3 view;             // unit, towards the camera
+  vec3 diffuse;          // c_diff of glTF 2.0 appendix B
+  vec3 f0;
+  float alpha;  // GGX α = roughness²
+  float distance;
+  float error;  // bound on the error of `position` by floating point, metres
+};
+
+// Smallest α that is told from a mirror: D(0) stays finite for delta lights.
+const float kSmallestAlpha = 1.0 / 2048.0;
+
+bool isSurface(PackedSurface p) { return p.distance > 0.0; }
+
+// Where inside its pixel a surface was sampled: (b + 0.5) / 255, so that 127 is the centre.
+vec2 unpackJitter(uint bits) { return (vec2(bits & 255u, (bits >> 8u) & 255u) + 0.5) / 255.0; }
+
+// Rounding of origin + distance · direction with a direction of a few ulp, as a multiple of 2^-23 of the largest term.
+float positionError(vec3 position, vec3 origin, float distance) {
+  const vec3 largest = max(abs(position), abs(origin));
+  return (max(largest.x, max(largest.y, largest.z)) + distance) * (8.0 / 8388608.0);
+}
+
+vec3 surfaceNormal(PackedSurface p) { return unpackNormal(p.shadingNormal); }
+
+Surface unpackSurface(PackedSurface p, uvec2 pixel, Camera camera, vec2 size) {
+  Surface s;
+  const vec2 point = vec2(pixel) + unpackJitter(p.roughnessJitter);
+  const vec3 direction = cameraDirection(camera, point, size);
+  s.distance = p.distance;
+  s.position = camera.origin.xyz + p.distance * direction;
+  s.geometricNormal = unpackNormal(p.geometricNormal);
+  s.normal = unpackNormal(p.shadingNormal);
+  s.view = -direction;
+  s.diffuse = unpackAlbedo(p.diffuse);
+  s.f0 = unpackAlbedo(p.specular);
+  const float roughness = float(p.roughnessJitter >> 16u) / 65535.0;
+  s.alpha = max(roughness * roughness, kSmallestAlpha);
+  s.error = positionError(s.position, camera.origin.xyz, p.distance);
+  return s;
+}
+
+#endif

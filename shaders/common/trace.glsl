@@ -1,0 +1,79 @@
+// Tracing: one interface, two back ends (ray-tracing pipeline, ray query). A ray kernel (CAN_TRACE) calls
+//   Hit traceClosest(origin, direction, tMax, key)       nearest surface; BLEND surfaces are there with the probability of their alpha
+//   float traceTransmittance(origin, direction, tMax)    0: blocked, 1: free, between: through BLEND surfaces
+// Distances are in units of `direction`.
+#ifndef WEIR_TRACE
+#define WEIR_TRACE
+
+#include "trace_types.glsl"
+
+void countRay() {
+#ifdef COUNT_RAYS
+  atomicAdd(rayCounter.count, 1u);
+#endif
+}
+
+#ifdef TRACE_PIPELINE
+layout(location = 0) rayPayloadEXT HitPayload tracePayload;
+layout(location = 1) rayPayloadEXT float traceThrough;
+
+Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key) {
+  countRay();
+  tracePayload.triangle = kNoTriangle;
+  tracePayload.key = key;
+  traceRayEXT(sceneAcceleration, gl_RayFlagsNoneEXT, 0xffu, 0u, 0u, 0u, origin, 0.0, direction, tMax, 0);
+  return Hit(tracePayload.triangle, tracePayload.instance, tracePayload.barycentrics);
+}
+
+float traceTransmittance(vec3 origin, vec3 direction, float tMax) {
+  countRay();
+  traceThrough = 1.0;
+  // Nothing but any-hit touches the payload on the way; an accepted hit ends the ray, and only a miss says so.
+  traceRayEXT(sceneAcceleration, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xffu, 1u, 0u, 1u,
+              origin, 0.0, direction, tMax, 1);
+  // The miss shader turns a surviving transmittance τ into -τ, so that a blocked ray can be told from a free one.
+  return traceThrough < 0.0 ? -traceThrough : 0.0;
+}
+#endif
+
+#ifdef TRACE_QUERY
+Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key) {
+  countRay();
+  rayQueryEXT query;
+  rayQueryInitializeEXT(query, sceneAcceleration, gl_RayFlagsNoneEXT, 0xffu, origin, 0.0, direction, tMax);
+  while (rayQueryProceedEXT(query)) {
+    const uint instance = rayQueryGetIntersectionInstanceCustomIndexEXT(query, false);
+    const uint triangle = hitTriangle(instance, rayQueryGetIntersectionGeometryIndexEXT(query, false),
+                                      rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
+    const float coverage = triangleCoverage(triangle, rayQueryGetIntersectionBarycentricsEXT(query, false));
+    if (coversPixel(coverage, triangle, key)) rayQueryConfirmIntersectionEXT(query);
+  }
+  if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
+    return Hit(kNoTriangle, 0u, vec2(0.0));
+  }
+  const uint instance = rayQueryGetIntersectionInstanceCustomIndexEXT(query, true);
+  return Hit(hitTriangle(instance, rayQueryGetIntersectionGeometryIndexEXT(query, true),
+                         rayQueryGetIntersectionPrimitiveIndexEXT(query, true)),
+             instance, rayQueryGetIntersectionBarycentricsEXT(query, true));
+}
+
+float traceTransmittance(vec3 origin, vec3 direction, float tMax) {
+  countRay();
+  rayQueryEXT query;
+  rayQueryInitializeEXT(query, sceneAcceleration, gl_RayFlagsTerminateOnFirstHitEXT, 0xffu, origin, 0.0, direction, tMax);
+  float through = 1.0;
+  while (rayQueryProceedEXT(query)) {
+    const uint triangle = hitTriangle(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
+                                      rayQueryGetIntersectionGeometryIndexEXT(query, false),
+                                      rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
+    through *= 1.0 - triangleCoverage(triangle, rayQueryGetIntersectionBarycentricsEXT(query, false));
+    if (through <= 0.0) {
+      rayQueryTerminateEXT(query);
+      return 0.0;
+    }
+  }
+  return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT ? through : 0.0;
+}
+#endif
+
+#endif

@@ -1,0 +1,24 @@
+// What both G-buffers write for a pixel.
+#include "gbuffer_jitter.glsl"
+#include "hit_surface.glsl"
+
+const float kInfinity = 3.0e38;
+
+void writePixel(uvec2 pixel, Hit hit, vec3 direction, uvec2 jitter) {
+  const vec2 point = vec2(pixel) + jitterPlace(jitter);
+  const uint index = pixel.y * frameWidth + pixel.x;
+  vec3 before;  // where last frame's camera saw what this pixel shows
+  if (hit.triangle == kNoTriangle) {
+    out_surface[index] = noSurface();
+    imageStore(out_emission, ivec2(pixel), vec4(0.0));
+    before = cameraProject(previousCamera, previousCamera.origin.xyz + direction, frameSize);
+  } else {
+    const HitSurface s = surfaceAt(hit, camera.origin.xyz, direction, jitter);
+    out_surface[index] = s.surface;
+    imageStore(out_emission, ivec2(pixel), vec4(s.emission, 1.0));
+    before = cameraProject(previousCamera, s.position, frameSize);
+  }
+  // Behind last frame's camera: nowhere on its picture.
+  const vec2 motion = before.z > 0.0 ? before.xy - point : vec2(kInfinity);
+  imageStore(out_motion, ivec2(pixel), vec4(motion, 0.0, 0.0));
+}

@@ -1,0 +1,54 @@
+// Spatial reuse: each pixel's reservoirs are merged with those of pixels around it whose surfaces are alike.
+// Bitterli et al. 2020, section 4. One launch an iteration; launchIndex is its number.
+#include "random.glsl"
+#include "merge.glsl"
+
+const uint kPerPixel = in_reservoirs_count;
+const uint kMostNeighbours = 16u;
+
+void run(uvec2 pixel) {
+  const uint index = pixel.y * frameWidth + pixel.x;
+  const PackedSurface packed = in_surface[index];
+  if (!isSurface(packed)) {
+    for (uint k = 0u; k < kPerPixel; ++k) out_reservoirs[index * kPerPixel + k] = emptyReservoir();
+    return;
+  }
+  const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
+  const float cosine = cos(radians(param_normalThreshold));
+  Random random = randomFor(pixel, launchIndex);
+
+  // Who takes part follows from the surfaces alone.
+  uint neighbours[kMostNeighbours];
+  uint found = 0u;
+  for (int i = 0; i < param_neighbours; ++i) {
+    const vec2 u = next2(random);
+    const float angle = 2.0 * kPi * u.y;
+    const vec2 offset = param_radius * sqrt(u.x) * vec2(cos(angle), sin(angle));
+    const ivec2 other = ivec2(floor(vec2(pixel) + 0.5 + offset));
+    if (any(lessThan(other, ivec2(0))) || any(greaterThanEqual(other, ivec2(frameSize))) || other == ivec2(pixel)) continue;
+    const uint otherIndex = uint(other.y) * frameWidth + uint(other.x);
+    const PackedSurface candidate = in_surface[otherIndex];
+    if (!isSurface(candidate)) continue;
+    if (!similar(packed, candidate, param_depthThreshold, cosine, param_albedoThreshold)) continue;
+    neighbours[found++] = otherIndex;
+  }
+
+  for (uint k = 0u; k < kPerPixel; ++k) {
+    float others = 0.0;
+    for (uint i = 0u; i < found; ++i) others += in_reservoirs[neighbours[i] * kPerPixel + k].confidence;
+    const Reservoir own = in_reservoirs[index * kPerPixel + k];
+    Merge merge = beginMerge(surface, own, others);
+    for (uint i = 0u; i < found; ++i) {
+      const uint n = neighbours[i];
+      const Reservoir theirs = in_reservoirs[n * kPerPixel + k];
+      const Surface there =
+          unpackSurface(in_surface[n], uvec2(n % frameWidth, n / frameWidth), camera, frameSize);
+      mergeNeighbour(merge, there, theirs, theirs.confidence, param_mis, next1(random));
+    }
+    Reservoir merged = endMerge(merge, param_mis, next1(random));
+#ifdef VISIBILITY_RAYS
+    testVisibility(merged, surface);
+#endif
+    out_reservoirs[index * kPerPixel + k] = merged;
+  }
+}

@@ -1,0 +1,51 @@
+// Temporal reuse: each pixel's reservoirs are merged with those that its surface had last frame, found by the motion vector.
+// Bitterli et al. 2020, section 4; the history counts at most `confidenceCap` fresh frames. The history's target is that of LAST
+// frame's surface and camera.
+#include "random.glsl"
+#include "merge.glsl"
+
+const uint kPerPixel = in_reservoirs_count;
+
+void run(uvec2 pixel) {
+  const uint index = pixel.y * frameWidth + pixel.x;
+  const PackedSurface packed = in_surface[index];
+  if (!isSurface(packed)) {
+    for (uint k = 0u; k < kPerPixel; ++k) out_reservoirs[index * kPerPixel + k] = emptyReservoir();
+    return;
+  }
+  const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
+
+  // The pixel that holds the point where this surface was.
+  const vec2 motion = imageLoad(in_motion, ivec2(pixel)).xy;
+  const vec2 point = vec2(pixel) + unpackJitter(packed.roughnessJitter) + motion;
+  const ivec2 before = ivec2(floor(point));
+  bool reuse = all(greaterThanEqual(before, ivec2(0))) && all(lessThan(before, ivec2(frameSize)));
+  const uint beforeIndex = reuse ? uint(before.y) * frameWidth + uint(before.x) : 0u;
+  const PackedSurface beforePacked = in_previousSurface[beforeIndex];
+  if (reuse) {
+    // Compare at the distance from which last frame's camera should have seen this point.
+    PackedSurface expected = packed;
+    expected.distance = distance(surface.position, previousCamera.origin.xyz);
+    reuse = isSurface(beforePacked) &&
+            similar(expected, beforePacked, param_depthThreshold, cos(radians(param_normalThreshold)), param_albedoThreshold);
+  }
+  if (!reuse) {
+    for (uint k = 0u; k < kPerPixel; ++k) out_reservoirs[index * kPerPixel + k] = in_reservoirs[index * kPerPixel + k];
+    return;
+  }
+  const Surface beforeSurface = unpackSurface(beforePacked, uvec2(before), previousCamera, frameSize);
+  Random random = randomFor(pixel, 0u);
+  for (uint k = 0u; k < kPerPixel; ++k) {
+    const Reservoir own = in_reservoirs[index * kPerPixel + k];
+    const Reservoir history = sanitized(in_history[beforeIndex * kPerPixel + k]);
+    const float confidence = min(history.confidence, float(param_confidenceCap) * own.confidence);
+    const vec4 u = next4(random);
+    Merge merge = beginMerge(surface, own, confidence);
+    mergeNeighbour(merge, beforeSurface, history, confidence, param_mis, u.x);
+    Reservoir merged = endMerge(merge, param_mis, u.y);
+#ifdef VISIBILITY_RAYS
+    testVisibility(merged, surface);
+#endif
+    out_reservoirs[index * kPerPixel + k] = merged;
+  }
+}
