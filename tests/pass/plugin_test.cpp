@@ -1,0 +1,243 @@
+// Plugins that are wrong in one way each: a clear finding, and the others are still there.
+#include <weir/core/error.h>
+#include <weir/graph/compile.h>
+#include <weir/pass/registry.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folderOf(const std::string& plugin) {
+  return fs::path(TEST_PLUGIN_FOLDER) / plugin;
+}
+
+std::string libraryOf(const std::string& plugin) {
+  return (folderOf(plugin) / ("libweir_" + plugin + ".so")).string();
+}
+
+class Plugins : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    scratch = fs::temp_directory_path() / (std::string("weir_plugins_") + test->name());
+    fs::remove_all(scratch);
+    fs::create_directories(scratch);
+  }
+  void TearDown() override { fs::remove_all(scratch); }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    fs::create_directories((scratch / name).parent_path());
+    std::ofstream(scratch / name) << text;
+    return scratch / name;
+  }
+  static std::string manifest(const std::string& name, const std::string& library, const std::string& abi = "",
+                              const std::string& tag = WEIR_BUILD_TAG) {
+    return "{\"name\": \"" + name + "\", \"library\": \"" + library +
+           "\", \"abi\": " + (abi.empty() ? std::to_string(WEIR_ABI_VERSION) : abi) + ", \"buildTag\": \"" + tag +
+           "\"}";
+  }
+  fs::path scratch;
+};
+
+void expectRefused(Registry& registry, const std::string& type, const std::vector<std::string>& words) {
+  EXPECT_EQ(registry.find(type), nullptr);
+  const std::string problem = registry.problem(type);
+  for (const std::string& word : words) EXPECT_NE(problem.find(word), std::string::npos) << word << " in: " << problem;
+  try {
+    registry.create(type);
+    ADD_FAILURE() << type << " must not be made";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(problem), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(Plugins, AGoodOne) {
+  Registry registry({folderOf("good")});
+  const PassDescription* nothing = registry.find("good.Nothing");
+  ASSERT_NE(nothing, nullptr);
+  EXPECT_EQ(nothing->type, "good.Nothing");
+  EXPECT_EQ(nothing->outputs.size(), 1u);
+  EXPECT_EQ(registry.find("good.Nothing"), nothing);
+  EXPECT_NE(registry.create("good.Nothing"), nullptr);
+  EXPECT_EQ(registry.types(), (std::vector<std::string>{"good.CannotBeMade", "good.Nothing"}));
+  EXPECT_EQ(registry.shaderFolder("good.Nothing"), fs::canonical(folderOf("good")) / "shaders/good");
+  EXPECT_EQ(registry.problem("good.Nothing"), "");
+  EXPECT_TRUE(registry.problems().empty());
+}
+
+TEST_F(Plugins, AConstructorThatThrowsIsARuntimeError) {
+  Registry registry({folderOf("good")});
+  try {
+    registry.create("good.CannotBeMade");
+    FAIL();
+  } catch (const RuntimeError& error) {
+    EXPECT_NE(std::string(error.what()).find("no room"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("good.CannotBeMade"), std::string::npos);
+  }
+}
+
+TEST_F(Plugins, UnknownTypesNameTheNearest) {
+  Registry registry({folderOf("good")});
+  EXPECT_EQ(registry.problem("good.Nothin"), "plugin 'good' has no pass 'Nothin'");
+  EXPECT_NE(registry.problem("goood.Nothing").find("no plugin 'goood'"), std::string::npos);
+  EXPECT_NE(registry.problem("Nothing").find("plugin.Pass"), std::string::npos);
+  EXPECT_EQ(registry.find(""), nullptr);
+  try {
+    registry.create("good.Nothin");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("nearest: 'good.Nothing'"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(Plugins, EachWrongOneIsRefusedAndTheGoodOneLivesOn) {
+  const struct {
+    const char *plugin, *pass;
+    std::vector<std::string> words;
+  } cases[] = {
+      {"wrong_abi", "Nothing", {"ABI 999", "rebuild"}},
+      {"wrong_tag", "Nothing", {"weir-0.0-Watcom1", WEIR_BUILD_TAG}},
+      {"wrong_name", "Nothing", {"calls itself 'another_name'", "'wrong_name'"}},
+      {"no_symbol", "Nothing", {"does not export the function weir_plugin"}},
+      {"throws", "Throws", {"'throws.Throws'", "the tables are missing"}},
+      {"throws", "Nothing", {"the tables are missing"}},
+      {"throws_int", "Throws", {"no exception"}},
+      {"twice", "Nothing", {"two passes called 'Nothing'"}},
+      {"contradicts", "Contradicts", {"amount", "outside its range"}},
+  };
+  std::vector<fs::path> folders{folderOf("good")};
+  for (const auto& c : cases) folders.push_back(folderOf(c.plugin));
+  Registry registry(folders);
+  EXPECT_TRUE(registry.problems().empty()) << "nothing is loaded before it is asked for";
+  for (const auto& c : cases) {
+    std::vector<std::string> words = c.words;
+    words.push_back(libraryOf(c.plugin));
+    expectRefused(registry, std::string(c.plugin) + "." + c.pass, words);
+  }
+  EXPECT_EQ(registry.problems().size(), 8u);
+  EXPECT_EQ(registry.types().size(), 2u);
+  EXPECT_NE(registry.create("good.Nothing"), nullptr);
+}
+
+TEST_F(Plugins, BadManifestsAreNamedAndStopNobody) {
+  const struct {
+    const char *file, *text, *words;
+  } cases[] = {
+      {"weir_a.json", "{", "not valid JSON"},
+      {"weir_b.json", "[]", "must be a JSON object"},
+      {"weir_c.json", "{\"name\": \"c\"}", "no 'library'"},
+      {"weir_d.json", "{\"name\": 3}", "'name'"},
+      {"weir_e.json", "{\"name\": \"e.f\", \"library\": \"x\", \"abi\": 1, \"buildTag\": \"x\"}",
+       "must not contain '.'"},
+      {"weir_f.json", "{\"name\": \"f\", \"library\": \"x\", \"abi\": -1, \"buildTag\": \"x\"}", "'abi'"},
+      {"weir_g.json", "", "not valid JSON"},
+  };
+  for (const auto& c : cases) write(c.file, c.text);
+  write("other.json", "{");
+  write("weir_h.txt", "{");
+  Registry registry({scratch, folderOf("good")});
+  ASSERT_EQ(registry.problems().size(), std::size(cases));
+  for (size_t i = 0; i < std::size(cases); ++i) {
+    const std::string& message = registry.problems()[i].message;
+    EXPECT_NE(message.find((fs::canonical(scratch) / cases[i].file).string()), std::string::npos) << message;
+    EXPECT_NE(message.find(cases[i].words), std::string::npos) << message;
+  }
+  expectRefused(registry, "a.Pass", {"not valid JSON"});
+  EXPECT_NE(registry.find("good.Nothing"), nullptr);
+}
+
+TEST_F(Plugins, AManifestOfAnotherBuildIsRefusedWithoutLoading) {
+  write("weir_old.json", manifest("old", "does_not_exist.so", "77"));
+  write("weir_tag.json", manifest("tag", "does_not_exist.so", "", "yesterday"));
+  write("weir_gone.json", manifest("gone", "does_not_exist.so"));
+  const fs::path text = write("text.so", "this is no library");
+  write("weir_text.json", manifest("text", text.string()));
+  Registry registry({scratch});
+  expectRefused(registry, "old.Pass", {"ABI 77", "weir_old.json"});
+  expectRefused(registry, "tag.Pass", {"yesterday", "weir_tag.json"});
+  expectRefused(registry, "gone.Pass", {"does not exist", "weir_gone.json"});
+  expectRefused(registry, "text.Pass", {"can't be loaded", text.string()});
+}
+
+TEST_F(Plugins, TwoThatClaimOneNameAreBothNamedAndNeitherIsUsed) {
+  const fs::path first = write("one/weir_good.json", manifest("good", libraryOf("good")));
+  const fs::path second = write("two/weir_good.json", manifest("good", libraryOf("good")));
+  Registry registry({scratch / "one", scratch / "two", folderOf("twice")});
+  ASSERT_EQ(registry.problems().size(), 1u);
+  expectRefused(registry, "good.Nothing",
+                {"two plugins claim the name 'good'", fs::canonical(first).string(), fs::canonical(second).string()});
+}
+
+TEST_F(Plugins, OneFolderTwiceOnThePathIsOneFolder) {
+  fs::create_directory_symlink(folderOf("good"), scratch / "link");
+  Registry registry({folderOf("good"), folderOf("good") / ".", scratch / "link"});
+  EXPECT_TRUE(registry.problems().empty());
+  EXPECT_NE(registry.find("good.Nothing"), nullptr);
+}
+
+TEST_F(Plugins, AFolderThatIsNoneIsSaid) {
+  Registry registry({scratch / "nowhere", write("file", "x")});
+  ASSERT_EQ(registry.problems().size(), 2u);
+  EXPECT_NE(registry.problems()[0].message.find("nowhere"), std::string::npos);
+}
+
+TEST_F(Plugins, TheSearchPathInItsOrder) {
+  ::setenv("WEIR_PLUGIN_PATH", "/b::/c:", 1);
+  const std::vector<fs::path> path = pluginSearchPath({"/a"});
+  ::unsetenv("WEIR_PLUGIN_PATH");
+  ASSERT_EQ(path.size(), 4u);
+  EXPECT_EQ(path[0], "/a");
+  EXPECT_EQ(path[1], "/b");
+  EXPECT_EQ(path[2], "/c");
+  EXPECT_EQ(path[3], fs::canonical(std::string(WEIR_BINARY_DIR) + "/bin"));
+  EXPECT_EQ(pluginSearchPath({}).size(), 1u);
+}
+
+TEST_F(Plugins, AGraphSaysWhyItsTypeIsRefused) {
+  Registry registry({folderOf("wrong_tag")});
+  std::vector<graph::Diagnostic> diagnostics;
+  const graph::Description d = graph::parse(
+      "{\"version\": 1, \"passes\": {\n\"a\": {\"type\": \"wrong_tag.Nothing\"}}, \"outputs\": {\"o\": \"a.color\"}}",
+      "g.json", diagnostics);
+  graph::compile(d, registry.catalog(), 8, 8, diagnostics);
+  ASSERT_EQ(diagnostics.size(), 1u);
+  EXPECT_EQ(diagnostics[0].line, 2);
+  EXPECT_NE(diagnostics[0].message.find("Watcom"), std::string::npos) << diagnostics[0].message;
+}
+
+// ---------------------------------------------------------------------------------------------------- in-process
+
+class Made final : public Pass {
+ public:
+  static inline int alive = 0;
+  static void describe(PassDescription& d) { d.output("o", image(Format::R32F)); }
+  Made() { ++alive; }
+  ~Made() override { --alive; }
+  void prepare(PrepareContext&) override {}
+  void record(RecordContext&) override {}
+};
+
+TEST(Registry, PassesOfTheProgramItself) {
+  Registry registry;
+  const WeirPassEntry entries[] = {passEntry<Made>("Made")};
+  registry.add("here", entries, "/shaders/here");
+  EXPECT_EQ(registry.types(), std::vector<std::string>{"here.Made"});
+  EXPECT_EQ(registry.shaderFolder("here.Made"), "/shaders/here");
+  {
+    const PassPtr pass = registry.create("here.Made");
+    EXPECT_EQ(Made::alive, 1);
+  }
+  EXPECT_EQ(Made::alive, 0);
+  EXPECT_THROW(registry.add("here", entries), InputError);
+  EXPECT_THROW(registry.add("a.b", entries), InputError);
+  EXPECT_THROW(registry.add("", entries), InputError);
+}
+
+}  // namespace
+}  // namespace weir
