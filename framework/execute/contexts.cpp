@@ -224,9 +224,11 @@ void Recording::draw(Kernel kernel) {
   const VkRect2D scissor{{0, 0}, extent};
   vkCmdSetViewport(cursor_.commands, 0, 1, &viewport);
   vkCmdSetScissor(cursor_.commands, 0, 1, &scissor);
-  const std::vector<uint32_t>& drawn = runtime_.shared_.scene->drawnTriangles;
-  for (uint32_t i = 0; i < drawn.size(); ++i) {
-    if (drawn[i] > 0) vkCmdDraw(cursor_.commands, drawn[i] * 3, 1, 0, i);
+  const auto& draws = runtime_.shared_.scene->draws;
+  for (uint32_t i = 0; i < draws.size(); ++i) {
+    vkCmdSetCullMode(cursor_.commands, draws[i].doubleSided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
+    vkCmdSetFrontFace(cursor_.commands, draws[i].flipsWinding ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+    if (draws[i].triangles > 0) vkCmdDraw(cursor_.commands, draws[i].triangles * 3, 1, 0, i);
   }
   vkCmdEndRendering(cursor_.commands);
 }

@@ -25,7 +25,7 @@ class Pipeline {
                           const Specialization& constants, const std::string& name);
   static Pipeline rays(const gpu::Device& device, VkPipelineLayout layout, std::span<const uint32_t> rayGeneration,
                        const HitShaders& hits, const Specialization& constants, const std::string& name);
-  /// Draws into one color target of `format` and a D32 depth buffer, reversed depth, no culling.
+  /// Draws into one color target of `format` and a D32 depth buffer, reversed depth; culling is dynamic state.
   static Pipeline raster(const gpu::Device& device, VkPipelineLayout layout, std::span<const uint32_t> vertex,
                          std::span<const uint32_t> fragment, VkFormat format, const Specialization& constants,
                          const std::string& name);

@@ -55,7 +55,7 @@ class PrepareContext : public PassContext {
   virtual Kernel kernel(const std::string& file, const KernelOptions& options = {}) = 0;
   /// The same, and it may trace rays (needs scene.acceleration): a ray generation shader or compute with ray queries.
   virtual Kernel rayKernel(const std::string& file, const KernelOptions& options = {}) = 0;
-  /// Draws every triangle of the scene, depth-tested, into an R32U scratch image cleared to ~0. The file defines
+  /// Draws every triangle of the scene that faces the camera or is double-sided, depth-tested, into an R32U scratch image cleared to ~0. The file defines
   /// `vec4 vertex(uint instance, uint triangle, uint corner)` (clip position) and `uint fragment(...)`: see shaders/gbuffer/raster.glsl.
   virtual Kernel rasterKernel(const std::string& file, const std::string& target, const KernelOptions& options = {}) = 0;
 };

@@ -4,6 +4,7 @@
 #include <weir/scene/spatial_sort.h>
 
 #include <algorithm>
+#include <array>
 
 namespace weir::scene {
 namespace {
@@ -57,6 +58,30 @@ bool isInstanced(const Scene& scene, const Mesh& mesh, uint64_t uses, const Prep
   return uses >= limits.mergeUses && uses * triangles > limits.mergeTriangles;
 }
 
+/// Geometry that goes into two ranges, by the sides of its materials.
+class SidedRanges {
+ public:
+  explicit SidedRanges(const std::vector<PackedMaterial>& materials)
+      : materials_(materials), ranges_{GeometryRange(materials), GeometryRange(materials)} {}
+  void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform) {
+    ranges_[(materials_[material].flags & kMaterialDoubleSided) != 0 ? 1 : 0].add(primitive, material, transform);
+  }
+  /// Appends both ranges, empty or not; their numbers.
+  std::array<uint32_t, 2> finish(PreparedScene& prepared) {
+    std::array<uint32_t, 2> numbers{};
+    for (size_t side = 0; side < 2; ++side) {
+      numbers[side] = static_cast<uint32_t>(prepared.ranges.size());
+      ranges_[side].finish(prepared);
+      prepared.ranges.back().doubleSided = side == 1;
+    }
+    return numbers;
+  }
+
+ private:
+  const std::vector<PackedMaterial>& materials_;
+  std::array<GeometryRange, 2> ranges_;
+};
+
 Bounds rangeBounds(const PreparedScene& prepared, const TriangleRange& range, const glm::dmat4& toWorld) {
   Bounds bounds;
   for (uint32_t t = range.first; t < range.first + range.opaque + range.masked; ++t)
@@ -91,31 +116,32 @@ PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits) {
   std::vector<char> instanced(scene.meshes.size(), 0);
   for (size_t m = 0; m < scene.meshes.size(); ++m) instanced[m] = isInstanced(scene, scene.meshes[m], uses[m], limits);
 
-  GeometryRange merged(prepared.materials);
+  SidedRanges merged(prepared.materials);
   for (const Instance& instance : scene.instances)
     if (!instanced[instance.mesh])
       for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
         merged.add(primitive, packedIndex(prepared, primitive), glm::dmat4(instance.toWorld));
-  merged.finish(prepared);
-  const TriangleRange& statics = prepared.ranges[0];
-  if (statics.opaque + statics.masked > 0) {
-    prepared.instances.push_back({0, glm::mat4(1.0f), false});
-    prepared.bounds = rangeBounds(prepared, statics, glm::dmat4(1.0));
+  for (uint32_t range : merged.finish(prepared)) {
+    const Bounds bounds = rangeBounds(prepared, prepared.ranges[range], glm::dmat4(1.0));
+    if (bounds.empty) continue;
+    prepared.instances.push_back({range, glm::mat4(1.0f), false});
+    prepared.bounds.add(bounds.low);
+    prepared.bounds.add(bounds.high);
   }
 
-  std::vector<uint32_t> rangeOf(scene.meshes.size(), 0);
+  std::vector<std::array<uint32_t, 2>> rangesOf(scene.meshes.size(), {0, 0});
   std::vector<PreparedInstance> shared;
   for (const Instance& instance : scene.instances) {
     if (!instanced[instance.mesh]) continue;
-    uint32_t& range = rangeOf[instance.mesh];
-    if (range == 0) {
-      range = static_cast<uint32_t>(prepared.ranges.size());
-      GeometryRange own(prepared.materials);
+    std::array<uint32_t, 2>& ranges = rangesOf[instance.mesh];
+    if (ranges[0] == 0) {
+      SidedRanges own(prepared.materials);
       for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
         own.add(primitive, packedIndex(prepared, primitive), glm::dmat4(1.0));
-      own.finish(prepared);
+      ranges = own.finish(prepared);
     }
-    shared.push_back({range, instance.toWorld, glm::determinant(glm::dmat3(glm::dmat4(instance.toWorld))) < 0.0});
+    const bool mirrors = glm::determinant(glm::dmat3(glm::dmat4(instance.toWorld))) < 0.0;
+    for (uint32_t range : ranges) shared.push_back({range, instance.toWorld, mirrors});
   }
   placeInstances(shared, prepared);
 

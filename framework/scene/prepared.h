@@ -53,11 +53,14 @@ struct PreparedTexture {
 
 /// Triangles that share a bottom-level acceleration structure: opaque ones first, then those with an alpha test.
 /// Both ranges are sorted spatially (median split), since a software device builds in input order.
+/// Its materials are either all single-sided or all double-sided: what the camera sees through is decided an instance.
 struct TriangleRange {
   uint32_t first = 0, opaque = 0, masked = 0;
+  bool doubleSided = false;
 };
 
-/// An instance in the top-level structure; range 0 is the merged static geometry with an identity transform.
+/// An instance in the top-level structure; ranges 0 and 1 are the merged static geometry, single-sided and double-sided,
+/// with identity transforms.
 /// Triangle t of a hit = range.first + (geometry == 1 ? range.opaque : 0) + primitive.
 struct PreparedInstance {
   uint32_t range = 0;
@@ -69,7 +72,7 @@ struct PreparedScene {
   std::vector<glm::vec3> positions;
   std::vector<PackedVertex> vertices;  ///< beside positions
   std::vector<PackedTriangle> triangles;
-  std::vector<TriangleRange> ranges;        ///< [0] may be empty
+  std::vector<TriangleRange> ranges;        ///< [0] and [1] may be empty
   std::vector<PreparedInstance> instances;  ///< never empty when there are triangles
   std::vector<PackedMaterial> materials;    ///< the last one is glTF's default material
   std::vector<PreparedTexture> textures;

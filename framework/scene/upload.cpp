@@ -21,7 +21,7 @@ VkSamplerAddressMode addressMode(Wrap wrap) {
 
 VkFilter filter(Filter f) { return f == Filter::Nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR; }
 
-std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vector<uint32_t>& drawn) {
+std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vector<SceneGpu::Draw>& draws) {
   std::vector<GpuInstance> result;
   uint32_t first = 0;
   for (const PreparedInstance& source : prepared.instances) {
@@ -32,8 +32,8 @@ std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vecto
     g.opaqueTriangles = range.opaque;
     g.flipsWinding = source.flipsWinding ? 1 : 0;
     g.firstDrawn = first;
-    drawn.push_back(range.opaque + range.masked);
-    first += drawn.back();
+    draws.push_back({range.opaque + range.masked, range.doubleSided, source.flipsWinding});
+    first += draws.back().triangles;
     result.push_back(g);
   }
   return result;
@@ -49,7 +49,7 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   positions_ = gpu::uploadBuffer(device, prepared.positions, kStorage | build, "scene positions");
   vertices_ = gpu::uploadBuffer(device, prepared.vertices, kStorage, "scene vertices");
   triangles_ = gpu::uploadBuffer(device, prepared.triangles, kStorage, "scene triangles");
-  instances_ = gpu::uploadBuffer(device, packInstances(prepared, drawnTriangles), kStorage, "scene instances");
+  instances_ = gpu::uploadBuffer(device, packInstances(prepared, draws), kStorage, "scene instances");
   materials_ = gpu::uploadBuffer(device, prepared.materials, kStorage, "scene materials");
   lights_ = gpu::uploadBuffer(device, prepared.lights, kStorage, "scene lights");
   alias_ = gpu::uploadBuffer(device, prepared.aliasTable, kStorage, "scene alias table");

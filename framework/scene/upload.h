@@ -53,7 +53,11 @@ class SceneGpu {
   // What the frame constants say of the scene.
   uint32_t lightCount = 0, instanceCount = 0;
   float diameter = 0.0f;               ///< of the bounding sphere, metres; at least twice the float error of its place
-  std::vector<uint32_t> drawnTriangles;  ///< per instance, for raster draws
+  struct Draw {
+    uint32_t triangles;
+    bool doubleSided, flipsWinding;
+  };
+  std::vector<Draw> draws;  ///< per instance, for rasterisation
 
  private:
   void uploadTextures(const Scene& scene, const PreparedScene& prepared);

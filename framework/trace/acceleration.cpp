@@ -171,7 +171,9 @@ void Acceleration::buildTop(const scene::PreparedScene& scene) {
     instance.transform = transformOf(source.toWorld);
     instance.instanceCustomIndex = static_cast<uint32_t>(i);
     instance.mask = 0xff;
-    instance.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
+    // Facing is decided in object space, where glTF's fronts are counter-clockwise, as are Vulkan's: a mirroring transform turns the
+    // ray's side along with the winding.
+    if (scene.ranges[source.range].doubleSided) instance.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
     instance.accelerationStructureReference = bottom_[source.range].address;
     instances.push_back(instance);
   }

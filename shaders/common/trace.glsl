@@ -1,11 +1,15 @@
 // Tracing: one interface, two back ends (ray-tracing pipeline, ray query). A ray kernel (CAN_TRACE) calls
-//   Hit traceClosest(origin, direction, tMax, key)       nearest surface; BLEND surfaces are there with the probability of their alpha
+//   Hit traceClosest(origin, direction, tMax, key, flags)  nearest surface; BLEND surfaces are there with the probability of their
+//                                                        alpha. flags: kEverySide, or kCameraSides for what a camera sees: glTF
+//                                                        hides the back of single-sided surfaces
 //   float traceTransmittance(origin, direction, tMax)    0: blocked, 1: free, between: through BLEND surfaces
 // Distances are in units of `direction`.
 #ifndef WEIR_TRACE
 #define WEIR_TRACE
 
 #include "trace_types.glsl"
+
+const uint kEverySide = 0u, kCameraSides = 0x10u;  // the latter is gl_RayFlagsCullBackFacingTrianglesEXT
 
 void countRay() {
 #ifdef COUNT_RAYS
@@ -17,11 +21,11 @@ void countRay() {
 layout(location = 0) rayPayloadEXT HitPayload tracePayload;
 layout(location = 1) rayPayloadEXT float traceThrough;
 
-Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key) {
+Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key, uint flags) {
   countRay();
   tracePayload.triangle = kNoTriangle;
   tracePayload.key = key;
-  traceRayEXT(sceneAcceleration, gl_RayFlagsNoneEXT, 0xffu, 0u, 0u, 0u, origin, 0.0, direction, tMax, 0);
+  traceRayEXT(sceneAcceleration, flags, 0xffu, 0u, 0u, 0u, origin, 0.0, direction, tMax, 0);
   return Hit(tracePayload.triangle, tracePayload.instance, tracePayload.barycentrics);
 }
 
@@ -37,10 +41,10 @@ float traceTransmittance(vec3 origin, vec3 direction, float tMax) {
 #endif
 
 #ifdef TRACE_QUERY
-Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key) {
+Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key, uint flags) {
   countRay();
   rayQueryEXT query;
-  rayQueryInitializeEXT(query, sceneAcceleration, gl_RayFlagsNoneEXT, 0xffu, origin, 0.0, direction, tMax);
+  rayQueryInitializeEXT(query, sceneAcceleration, flags, 0xffu, origin, 0.0, direction, tMax);
   while (rayQueryProceedEXT(query)) {
     const uint instance = rayQueryGetIntersectionInstanceCustomIndexEXT(query, false);
     const uint triangle = hitTriangle(instance, rayQueryGetIntersectionGeometryIndexEXT(query, false),
