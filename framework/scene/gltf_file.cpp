@@ -13,7 +13,7 @@ namespace {
 // Deeper than any glTF needs (a material extension's texture is at 7) and shallow enough for every recursion.
 constexpr int kJsonDepth = 64;
 // "{}" is two bytes in a file and up to kilobytes as a parsed node or material.
-constexpr uint64_t kJsonObjects = 4'000'000;
+constexpr uint64_t kJsonObjects = 1'000'000;
 
 uint32_t readLittle(std::span<const uint8_t> bytes, size_t at) {
   return bytes[at] | (bytes[at + 1] << 8) | (bytes[at + 2] << 16) | (static_cast<uint32_t>(bytes[at + 3]) << 24);
