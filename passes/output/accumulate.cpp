@@ -8,7 +8,10 @@ void Accumulate::describe(PassDescription& d) {
   d.doc("Mean of all frames since the history was last cleared, summed so that a million lose nothing");
   d.input("color", storageImage(Format::RGBA32F)).doc("This frame's radiance");
   d.input("history", perPixel<MeanState>()).doc("This pass's own state port, @previous");
-  d.output("color", storageImage(Format::RGBA32F)).radiance().passesThrough("color").doc("The mean; alpha as in this frame");
+  d.output("color", storageImage(Format::RGBA32F))
+      .radiance()
+      .passesThrough("color")
+      .doc("The mean; alpha as in this frame");
   d.output("state", perPixel<MeanState>()).passesThrough("history").doc("Sum and count");
   d.param("limit", 0)
       .range(0, 1 << 20)

@@ -6,7 +6,8 @@ namespace weir::passes {
 
 void Tonemap::describe(PassDescription& d) {
   d.doc("Radiance to what a screen shows: exposure, then an OpenColorIO view");
-  d.input("color", storageImage(Format::RGBA32F)).doc("Radiance; NaN counts as 0, infinities as the largest finite colour");
+  d.input("color", storageImage(Format::RGBA32F))
+      .doc("Radiance; NaN counts as 0, infinities as the largest finite colour");
   d.output("color", storageImage(Format::RGBA32F)).display().doc("As the view gives it; alpha 1");
   d.param("exposure", 0.0f).range(-32, 32).unit("EV").doc("Radiance is multiplied by 2^exposure before the view");
   d.param("config", "")

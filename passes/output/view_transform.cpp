@@ -29,14 +29,15 @@ struct Opened {
   std::string name;  ///< for messages
 };
 
-fs::path find(const std::string& file, const std::string& folder) {
+/// `origin`: who named the file, for messages.
+fs::path find(const std::string& origin, const std::string& file, const std::string& folder) {
   std::error_code error;
   if (fs::is_regular_file(file, error)) return file;
   const fs::path beside = fs::path(folder) / file;
   if (!folder.empty() && fs::is_regular_file(beside, error)) return beside;
   std::string places = fs::absolute(file, error).string();
   if (!folder.empty() && fs::path(file).is_relative()) places += " or " + beside.string();
-  throw InputError(fmt::format("config: no file {}; \"{}\" is the built-in config", places, kBuiltIn));
+  throw InputError(fmt::format("{}: no file {}; \"{}\" is the built-in config", origin, places, kBuiltIn));
 }
 
 Opened open(const ViewChoice& choice) {
@@ -52,7 +53,7 @@ Opened open(const ViewChoice& choice) {
     std::istringstream text(builtInConfig());
     return {ocio::Config::CreateFromStream(text), fmt::format("config {}", kBuiltIn)};
   }
-  const std::string path = find(file, choice.folder).string();
+  const std::string path = find(origin, file, choice.folder).string();
   try {
     return {ocio::Config::CreateFromFile(path.c_str()), fmt::format("config {}", path)};
   } catch (const ocio::Exception& e) {
