@@ -68,10 +68,10 @@ TEST(Layout, TheHashCoversNameVersionAndFields) {
 
 TEST(Layout, Compatible) {
   EXPECT_TRUE(compatible(perPixel<Sample>(), fixedBuffer<Sample>(3))) << "counts are compared in the graph";
-  EXPECT_FALSE(compatible(perPixel<Sample>(), image(Format::R32F)));
-  EXPECT_FALSE(compatible(image(Format::RGBA32F), image(Format::RGBA16F)));
-  EXPECT_TRUE(compatible(image(Format::RGBA32F), image(Format::RGBA32F)));
-  EXPECT_EQ(describe(image(Format::RGBA16F)), "image RGBA16F");
+  EXPECT_FALSE(compatible(perPixel<Sample>(), storageImage(Format::R32F)));
+  EXPECT_FALSE(compatible(storageImage(Format::RGBA32F), storageImage(Format::RGBA16F)));
+  EXPECT_TRUE(compatible(storageImage(Format::RGBA32F), storageImage(Format::RGBA32F)));
+  EXPECT_EQ(describe(storageImage(Format::RGBA16F)), "image RGBA16F");
   EXPECT_EQ(describe(perPixel<Sample>()).find("Sample v2 (32 bytes, hash 0x"), 0u) << describe(perPixel<Sample>());
 }
 
@@ -104,10 +104,10 @@ void expectBad(const std::string& words, const Build& build) {
 TEST(Check, AcceptsWhatIsConsistent) {
   PassDescription d;
   d.input("a", perPixel<Sample>()).anyCount();
-  d.input("b", image(Format::R32F)).optional();
+  d.input("b", storageImage(Format::R32F)).optional();
   d.output("a", perPixel<Sample>()).passesThrough("a").countOf("a");
   d.output("many", perPixel<Sample>()).times("n");
-  d.output("half", image(Format::R32F)).scale(1, 2);
+  d.output("half", storageImage(Format::R32F)).scale(1, 2);
   d.param("n", 2).range(1, 4);
   d.param("f", 0.7f).range(0.7, 0.9);
   d.param("choice", "x").oneOf({"x", "y"});
@@ -121,7 +121,7 @@ TEST(Check, AcceptsWhatIsConsistent) {
 }
 
 TEST(Check, RefusesContradictions) {
-  const PortType pixel = perPixel<Sample>(), picture = image(Format::R32F);
+  const PortType pixel = perPixel<Sample>(), picture = storageImage(Format::R32F);
   expectBad("declared twice", [&](auto& d) { d.input("a", picture), d.input("a", pixel); });
   expectBad("declared twice", [&](auto& d) { d.output("a", picture), d.output("a", pixel); });
   expectBad("declared twice", [&](auto& d) { d.param("a", 1), d.param("a", true); });

@@ -216,7 +216,7 @@ TEST_F(Plugins, AGraphSaysWhyItsTypeIsRefused) {
 class Made final : public Pass {
  public:
   static inline int alive = 0;
-  static void describe(PassDescription& d) { d.output("o", image(Format::R32F)); }
+  static void describe(PassDescription& d) { d.output("o", storageImage(Format::R32F)); }
   Made() { ++alive; }
   ~Made() override { --alive; }
   void prepare(PrepareContext&) override {}
