@@ -1,0 +1,2 @@
+# Their shaders are read at run time, where some tests look at passes of the house.
+add_dependencies(test_${name} weir_plugin_gbuffer weir_plugin_restir_di weir_plugin_output weir_plugin_reference)
