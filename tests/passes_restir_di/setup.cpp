@@ -173,6 +173,31 @@ double estimate(const oracle::World& world, const oracle::Surface& surface, cons
   return world.target(surface, lightOf(r), r.place) * static_cast<double>(r.weight);
 }
 
+std::vector<passes::Reservoir> freshReservoirs(const oracle::World& world, const View& view, oracle::Random& random,
+                                               int candidates, bool visibility, double confidence, int perPixel) {
+  std::vector<passes::Reservoir> result;
+  for (size_t i = 0; i < view.pixels(); ++i) {
+    for (int k = 0; k < perPixel; ++k) {
+      passes::Reservoir r{};
+      if (view.has(i)) r = world.sample(view[i], random, candidates, visibility, confidence);
+      if (visibility && r.weight > 0.0f && random() % 2 == 0) r.light |= 0x80000000u;
+      result.push_back(r);
+    }
+  }
+  return result;
+}
+
+std::vector<double> directLight(const oracle::World& world, const View& view, bool shadows) {
+  std::vector<double> result;
+  for (size_t i = 0; i < view.pixels(); ++i)
+    result.push_back(view.has(i) ? world.directLight(view[i], shadows, 24) : 0.0);
+  return result;
+}
+
+scene::Scene namedLights(uint32_t count) {
+  return pointScene({count, {glm::vec3(0.5f, 0.5f, 3.0f), glm::vec3(1.0f)}});
+}
+
 void Sample::add(double value) {
   ++count_;
   const double before = value - mean_;

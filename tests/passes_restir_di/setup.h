@@ -79,6 +79,18 @@ bool isFinite(const passes::Reservoir& r);
 double estimate(const oracle::World& world, const oracle::Surface& surface, const passes::Reservoir& r,
                 bool visibility);
 
+/// A reservoir by RIS for every pixel and sample; none has a sample or confidence where there is no surface. With
+/// visibility, hidden samples are null and half of the others say that they were seen.
+std::vector<passes::Reservoir> freshReservoirs(const oracle::World& world, const View& view, oracle::Random& random,
+                                               int candidates, bool visibility, double confidence = 1.0,
+                                               int perPixel = 1);
+
+/// Luminance of each pixel's direct light.
+std::vector<double> directLight(const oracle::World& world, const View& view, bool shadows);
+
+/// `count` equal point lights in one place, so that a reservoir's light can name where it came from.
+scene::Scene namedLights(uint32_t count);
+
 /// Mean and its standard error, one value at a time.
 class Sample {
  public:
