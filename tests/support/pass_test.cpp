@@ -127,7 +127,7 @@ std::string PassTest::json() const {
     const auto fed = feedBack_.find(input.name);
     const std::string from = fed == feedBack_.end() ? "source." + input.name : "it." + fed->second + "@previous";
     inputs += fmt::format("{}\"{}\": \"{}\"", inputs.empty() ? "" : ", ", input.name, from);
-    outputs += fmt::format("\"source {0}\": \"source.{0}\", ", input.name);
+    outputs += fmt::format("\"source-{0}\": \"source.{0}\", ", input.name);
   }
   for (const PortDescription& output : sourcePorts.pass->outputs) {
     outputs += fmt::format("{0}\"{1}\": \"it.{1}\"", &output == &sourcePorts.pass->outputs.front() ? "" : ", ", output.name);
