@@ -204,15 +204,15 @@ void Executor::record(Slot& slot, uint32_t slotIndex, const FrameInput& input) {
 }
 
 void Executor::frame(const FrameInput& input) {
-  const Clock::time_point start = Clock::now();
   const auto slotIndex = static_cast<uint32_t>(frames_ % kSlots);
   Slot& slot = slots_[slotIndex];
-  collect(slot);
+  collect(slot);  // waits for the frame before last: no work of this one's
   if (shared_.countRays) {
     finish();
     std::memset(rayCounter_.mapped(), 0, sizeof(uint32_t));
     rayCounter_.flush();
   }
+  const Clock::time_point start = Clock::now();
   if (input.cut) clearNext_ = true;
   record(slot, slotIndex, input);
   VkCommandBufferSubmitInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};

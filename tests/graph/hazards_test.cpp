@@ -2,6 +2,7 @@
 // barriers of its own.
 #include "fakes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -89,7 +90,7 @@ std::string randomGraph(std::mt19937& random) {
   const int passes = 1 + below(12);
   // The name says nothing of the place in the order, so that sorting by name is no help.
   std::vector<std::string> names;
-  for (int i = 0; i < passes; ++i) names.push_back("p" + std::to_string((i * 7 + 3) % 13));
+  for (int i = 0; i < passes; ++i) names.push_back(fmt::format("p{}", (i * 7 + 3) % 13));
   const auto reference = [&](int pass, bool previous) {
     return "\"" + names[pass] + (below(2) ? ".x" : ".y") + (previous ? "@previous\"" : "\"");
   };
