@@ -69,7 +69,7 @@ cat >"$out/weir" <<WRAPPER
 # missing or too old: its drivers may need its own, newer ones.
 here=\$(CDPATH= cd -- "\$(dirname -- "\$0")" && pwd)
 PATH=\${PATH:-/usr/bin:/bin}:/sbin:/usr/sbin
-own() { ldconfig -p 2>/dev/null | sed -n "s,.*\$1 (libc6\\\\,x86-64.* => ,,p" | head -n 1; }
+own() { ldconfig -p 2>/dev/null | sed -n "s|.*\$1 (libc6,x86-64.* => ||p" | head -n 1; }
 cxx=\$(own 'libstdc++\\.so\\.6')
 if [ -z "\$cxx" ] || ! grep -q '$needs_cxx' "\$cxx"; then extra=\$here/lib/runtime; fi
 if [ -z "\$(own 'libvulkan\\.so\\.1')" ]; then extra=\${extra:+\$extra:}\$here/lib/loader; fi
