@@ -28,7 +28,7 @@ tools/build.sh weir_app
 mkdir -p out
 echo "rendering after $((SECONDS - start)) s of set-up"
 build/release/bin/weir render graphs/restir_di.json --scene scenes/cornell.glb --size 512x512 \
-  --frames 16 --average 8 --out color=out/demo.png --stats out/demo.json
+  --frames 12 --average 12 --exposure 2 --out color=out/demo.png --stats out/demo.json
 
 python3 - out/demo.json <<'PYTHON'
 import json, sys
