@@ -50,11 +50,11 @@ ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
   else
     j["bounds"] = {{"low", vec(s.bounds.low)}, {"high", vec(s.bounds.high)}, {"radius", s.bounds.radius()}};
   j["cameras"] = std::move(cameras);
-  j["traits"] = {{"alpha_test", prepared.ranges[0].masked > 0 || s.maskedMaterials + s.blendMaterials > 0},
+  j["traits"] = {{"alpha_test", s.maskedMaterials + s.blendMaterials > 0},
                  {"textures", !prepared.textures.empty()},
                  {"emissive_triangles", prepared.triangleLights > 0},
                  {"delta_lights", prepared.lights.size() > prepared.triangleLights},
-                 {"shared_geometry", prepared.ranges.size() > 1}};
+                 {"shared_geometry", prepared.ranges.size() > 2}};  // the first two are the merged geometry
   j["warnings"] = scene.warnings;
   return j;
 }

@@ -21,12 +21,13 @@ void keep(Gathered& out, const GpuLight& light, double power) {
 }
 
 void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered& out) {
-  const TriangleRange& range = prepared.ranges[0];
-  const uint32_t end = range.first + range.opaque + range.masked;
   std::vector<std::vector<uint32_t>> perMaterial(prepared.materials.size());
-  for (uint32_t t = range.first; t < end; ++t) {
-    const uint32_t material = prepared.triangles[t].material;
-    if (prepared.materials[material].flags & kMaterialEmissive) perMaterial[material].push_back(t);
+  // Emissive meshes are always merged: single-sided ones into range 0, double-sided ones into range 1.
+  for (const TriangleRange& range : {prepared.ranges[0], prepared.ranges[1]}) {
+    for (uint32_t t = range.first; t < range.first + range.opaque + range.masked; ++t) {
+      const uint32_t material = prepared.triangles[t].material;
+      if (prepared.materials[material].flags & kMaterialEmissive) perMaterial[material].push_back(t);
+    }
   }
   // Material by material, so that one summed-area table lives at a time.
   for (size_t m = 0; m < perMaterial.size(); ++m) {

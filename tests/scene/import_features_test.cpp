@@ -101,7 +101,7 @@ TEST(ImportFeatures, MaterialsInFull) {
   const PreparedScene p = prepareScene(scene);
   EXPECT_EQ(p.materials.size(), 2u);
   EXPECT_EQ(p.materials[0].flags, kMaterialBlend | kMaterialDoubleSided | kMaterialEmissive);
-  EXPECT_EQ(p.ranges[0].masked, 1u);
+  EXPECT_EQ(p.ranges[1].masked, 1u);
   ASSERT_EQ(p.lights.size(), 1u);
   EXPECT_EQ(p.lights[0].kind, static_cast<uint32_t>(GpuLightKind::Triangle) | kLightDoubleSided);
 }

@@ -45,7 +45,7 @@ TEST(OwnScenes, MaterialsAndMasks) {
   EXPECT_EQ(summarize(cutouts).maskedMaterials, 2u);
   EXPECT_EQ(summarize(cutouts).emissiveTriangles, 2u);
   const PreparedScene p = prepareScene(cutouts);
-  EXPECT_EQ(p.ranges[0].masked, 28u);
+  EXPECT_EQ(p.ranges[1].masked, 28u);
   ASSERT_EQ(p.textures.size(), 2u);
   for (const auto& texture : p.textures) {
     // Both textures have holes and solid parts.

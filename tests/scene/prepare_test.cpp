@@ -91,9 +91,10 @@ Scene randomScene(int triangles, int instances, bool mirrored) {
 TEST(Prepare, RangesAreAPermutationWithOpaqueFirst) {
   const Scene scene = randomScene(500, 1, false);
   const PreparedScene p = prepareScene(scene);
-  ASSERT_EQ(p.ranges.size(), 1u);
+  ASSERT_EQ(p.ranges.size(), 2u);
   EXPECT_EQ(p.ranges[0].opaque, 500u);
   EXPECT_EQ(p.ranges[0].masked, 500u);
+  EXPECT_EQ(p.ranges[1].opaque + p.ranges[1].masked, 0u);
   for (uint32_t t = 0; t < 1000; ++t) EXPECT_EQ(p.triangles[t].material, t < 500 ? 0u : 1u);
   std::vector<Corners> expected;
   for (const Primitive& primitive : scene.meshes[0].primitives)
@@ -118,9 +119,9 @@ TEST(Prepare, RangesAreAPermutationWithOpaqueFirst) {
 TEST(Prepare, MergedAndInstancedAreTheSameTriangles) {
   const Scene scene = randomScene(200, 6, true);
   const PreparedScene merged = prepareScene(scene), shared = prepareScene(scene, {100, 4});
-  ASSERT_EQ(merged.ranges.size(), 1u);
-  ASSERT_EQ(shared.ranges.size(), 2u);
-  EXPECT_EQ(shared.ranges[0].opaque + shared.ranges[0].masked, 0u);
+  ASSERT_EQ(merged.ranges.size(), 2u);
+  ASSERT_EQ(shared.ranges.size(), 4u);
+  for (size_t side : {0, 1}) EXPECT_EQ(shared.ranges[side].opaque + shared.ranges[side].masked, 0u);
   EXPECT_EQ(shared.triangles.size(), 400u);
   ASSERT_EQ(shared.instances.size(), 6u);
   EXPECT_EQ(
@@ -139,11 +140,26 @@ TEST(Prepare, NormalsFaceLikeTheirTriangleUnderAnyTransform) {
   }
 }
 
+// Double-sided materials have a range of their own; their triangles are lights like any other.
+TEST(Prepare, DoubleSidedEmittersAreLights) {
+  Scene scene = randomScene(200, 1, false);
+  for (Material& m : scene.materials) m.emission = glm::vec3(1.0f);
+  scene.materials[0].doubleSided = true;
+  const PreparedScene p = prepareScene(scene);
+  EXPECT_EQ(p.ranges[0].masked, 200u);
+  EXPECT_EQ(p.ranges[1].opaque, 200u);
+  ASSERT_EQ(p.triangleLights, 400u);
+  for (const GpuLight& light : p.lights) {
+    const bool doubleSided = p.triangles[light.triangle].material == 0;
+    EXPECT_EQ((light.kind & kLightDoubleSided) != 0, doubleSided);
+  }
+}
+
 TEST(Prepare, EmissiveMeshesAreNeverInstanced) {
   Scene scene = randomScene(200, 6, true);
   scene.materials[1].emission = glm::vec3(1.0f);
   const PreparedScene p = prepareScene(scene, {100, 4});
-  EXPECT_EQ(p.ranges.size(), 1u);
+  EXPECT_EQ(p.ranges.size(), 2u);
   ASSERT_EQ(p.triangleLights, 1200u);
   double sum = 0.0;
   const auto table = aliasProbabilities(p.aliasTable);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <weir/graph/compile.h>
-#include <weir/pass/plugin.h>
 #include <weir/pass/registry.h>
 
 #include <algorithm>
@@ -62,6 +61,14 @@ PassTest& PassTest::size(uint32_t width, uint32_t height) {
 }
 PassTest& PassTest::scene(scene::Scene scene) {
   scene_ = std::move(scene);
+  return *this;
+}
+PassTest& PassTest::limits(const scene::PrepareLimits& limits) {
+  limits_ = limits;
+  return *this;
+}
+PassTest& PassTest::plugin(const std::string& name, std::vector<WeirPassEntry> passes, const std::string& shaderFolder) {
+  plugins_.push_back({name, shaderFolder, std::move(passes)});
   return *this;
 }
 PassTest& PassTest::param(const std::string& name, const std::string& value) {
@@ -144,6 +151,7 @@ void PassTest::build() {
   }
   machine_ = std::make_unique<Machine>(device);
   Machine& m = *machine_;
+  for (const OwnPlugin& own : plugins_) m.registry.add(own.name, own.passes, own.shaders);
   sourcePorts = {m.registry.find(type_), counts_};
   if (sourcePorts.pass == nullptr) throw InputError(type_ + ": " + m.registry.problem(type_));
   const WeirPassEntry source[] = {passEntry<Source>("Source")};
@@ -155,7 +163,7 @@ void PassTest::build() {
   graph::CompiledGraph compiled = graph::compile(description, m.registry.catalog(), width_, height_, diagnostics);
   if (!diagnostics.empty()) throw graph::GraphError(diagnostics);
 
-  m.prepared = scene::prepareScene(scene_);
+  m.prepared = scene::prepareScene(scene_, limits_);
   const bool traces = device->capabilities().accelerationStructure;
   m.scene = std::make_unique<scene::SceneGpu>(*device, scene_, m.prepared, traces);
   execute::ExecutorOptions options;

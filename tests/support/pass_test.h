@@ -6,6 +6,7 @@
 #pragma once
 
 #include <weir/execute/executor.h>
+#include <weir/pass/plugin.h>
 
 #include <cstring>
 #include <map>
@@ -28,6 +29,9 @@ class PassTest {
   // Before the first run().
   PassTest& size(uint32_t width, uint32_t height);
   PassTest& scene(scene::Scene scene);                 ///< default: an empty one
+  PassTest& limits(const scene::PrepareLimits& limits);  ///< which meshes stay instances; default: prepareScene's own
+  /// Passes of the test's own, as a plugin would bring them.
+  PassTest& plugin(const std::string& name, std::vector<WeirPassEntry> passes, const std::string& shaderFolder);
   PassTest& param(const std::string& name, const std::string& value);  ///< as after --set
   PassTest& count(const std::string& input, uint32_t perPixel);        ///< elements a pixel of an input that takes any
   PassTest& leaveOpen(const std::string& input);                       ///< an optional input that stays unconnected
@@ -57,6 +61,7 @@ class PassTest {
   }
 
   const scene::PreparedScene& prepared();
+  const scene::Scene& sourceScene() const { return scene_; }
   execute::FrameInput& next() { return frame_; }
   execute::Executor& executor();
 
@@ -70,6 +75,12 @@ class PassTest {
   std::string type_;
   uint32_t width_ = 64, height_ = 64;
   scene::Scene scene_;
+  scene::PrepareLimits limits_;
+  struct OwnPlugin {
+    std::string name, shaders;
+    std::vector<WeirPassEntry> passes;
+  };
+  std::vector<OwnPlugin> plugins_;
   std::vector<std::string> sets_;
   std::map<std::string, uint32_t> counts_;
   std::vector<std::string> open_;
