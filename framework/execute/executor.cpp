@@ -137,6 +137,7 @@ void Executor::writeConstants(const FrameInput& input, uint32_t slot) {
   c.lights = scene_.lightCount;
   c.instances = scene_.instanceCount;
   c.sceneDiameter = scene_.diameter;
+  c.sceneLargest = scene_.largestSide;
   // Depth is near/z in 32-bit floats, so that a near plane this close costs no precision.
   c.sceneNear = scene_.diameter * 0x1p-20f;
   std::memcpy(constants_.mapped() + slot * kConstantsStride, &c, sizeof c);

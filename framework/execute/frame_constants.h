@@ -18,8 +18,9 @@ struct FrameConstants {
   uint32_t width = 0, height = 0, frame = 0, seed = 0;
   uint32_t lights = 0, instances = 0;
   float sceneDiameter = 0.0f, sceneNear = 0.0f;
+  float sceneLargest = 0.0f, pad[3] = {0.0f, 0.0f, 0.0f};  ///< longest side of any triangle, metres
 };
-static_assert(sizeof(FrameConstants) == 160);
+static_assert(sizeof(FrameConstants) == 176);
 
 GpuCamera toGpu(const scene::Camera& camera, uint32_t width, uint32_t height);
 

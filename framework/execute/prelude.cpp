@@ -23,7 +23,7 @@ struct AliasCell { float threshold; uint alias; };
 layout(set = 0, binding = 0, std140) uniform FrameBlock {
   Camera camera, previousCamera;
   uint width, height, frame, seed, lights, instances;
-  float sceneDiameter, sceneNear;
+  float sceneDiameter, sceneNear, sceneLargest, pad0, pad1, pad2;
 } frameBlock;
 #define frameWidth frameBlock.width
 #define frameHeight frameBlock.height
@@ -73,6 +73,7 @@ std::string sceneDeclarations(const SceneParts& parts, uint32_t textures) {
   if (parts.geometry) {
     s += "#define NEED_SCENE_GEOMETRY 1\n#define sceneInstanceCount frameBlock.instances\n";
     s += "#define sceneDiameter frameBlock.sceneDiameter\n#define sceneNear frameBlock.sceneNear\n";
+    s += "#define sceneLargest frameBlock.sceneLargest\n";
     s += buffer(scene::kBindPositions, "readonly", "float", "scenePositions");
     s += buffer(scene::kBindVertices, "readonly", "Vertex", "sceneVertices");
     s += buffer(scene::kBindTriangles, "readonly", "uvec4", "sceneTriangles");

@@ -1,6 +1,7 @@
 #include <weir/scene/upload.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <span>
 #include <tuple>
@@ -39,6 +40,28 @@ std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vecto
   return result;
 }
 
+float longestSide(const PreparedScene& prepared) {
+  std::vector<float> ofRange;
+  for (const TriangleRange& range : prepared.ranges) {
+    float longest = 0.0f;
+    for (uint32_t t = range.first; t < range.first + range.opaque + range.masked; ++t) {
+      const auto& v = prepared.triangles[t].v;
+      for (int k = 0; k < 3; ++k) {
+        longest = std::max(longest, glm::distance(prepared.positions[v[k]], prepared.positions[v[(k + 1) % 3]]));
+      }
+    }
+    ofRange.push_back(longest);
+  }
+  float longest = 0.0f;
+  for (const PreparedInstance& instance : prepared.instances) {
+    float squares = 0.0f;  // of all columns: no direction is stretched further
+    for (int c = 0; c < 3; ++c) squares += glm::dot(glm::vec3(instance.toWorld[c]), glm::vec3(instance.toWorld[c]));
+    const bool identity = instance.toWorld == glm::mat4(1.0f);
+    longest = std::max(longest, ofRange[instance.range] * (identity ? 1.0f : std::sqrt(squares)));
+  }
+  return longest;
+}
+
 }  // namespace
 
 SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const PreparedScene& prepared, bool withAcceleration)
@@ -59,6 +82,7 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
 
   lightCount = static_cast<uint32_t>(prepared.lights.size());
   instanceCount = static_cast<uint32_t>(prepared.instances.size());
+  largestSide = longestSide(prepared);
   Bounds bounds = prepared.bounds;
   for (const PunctualLight& light : scene.lights) {
     if (light.kind != LightKind::Directional) bounds.add(light.position);

@@ -83,10 +83,27 @@ LightSample evaluatePunctual(Light light, vec3 position) {
   return s;
 }
 
-LightSample evaluateLight(uint index, uint place, vec3 position) {
-  const Light light = sceneLights[index];
+LightSample evaluateLight(Light light, uint place, vec3 position) {
   if ((light.kind & kKindMask) == kTriangle) return evaluateTriangle(light, placeOnTriangle(place), position);
   return evaluatePunctual(light, position);
+}
+
+LightSample evaluateLight(uint index, uint place, vec3 position) { return evaluateLight(sceneLights[index], place, position); }
+
+// Barycentrics of where a ray from `position` meets a triangle's plane.
+vec2 barycentricsAlong(Light light, vec3 position, vec3 direction) {
+  const vec3 normal = cross(light.a, light.b);
+  const vec3 toCorner = light.position - position;
+  const vec3 d = direction * (dot(normal, toCorner) / dot(normal, direction)) - toCorner;
+  return vec2(dot(normal, cross(d, light.b)), dot(normal, cross(light.a, d))) / dot(normal, normal);
+}
+
+// The place whose placeOnTriangle() lies at these barycentrics, to within its 16 bits a side.
+uint placeAt(vec2 barycentrics) {
+  const vec2 b = clamp(barycentrics, 0.0, 1.0);
+  const float root = min(b.x + b.y, 1.0);
+  const vec2 u = vec2(root * root, root > 0.0 ? min(b.y / root, 1.0) : 0.0);
+  return packPlace(min(u, 65535.5 / 65536.0));
 }
 
 #endif

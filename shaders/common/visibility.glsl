@@ -7,9 +7,14 @@
 #include "trace.glsl"
 
 #ifdef CAN_TRACE
+// A device meets a triangle with an error that grows with the triangle, however close by the ray begins: it subtracts the origin from
+// corners that may be far away. Which triangle the ray leaves isn't known here, so that the scene's largest one stands for all.
+float intersectionError() { return sceneLargest * (4.0 / 8388608.0); }
+
 // A ray's start, moved off the surface by its error, to the side that `direction` leaves it.
 vec3 offsetOrigin(Surface s, vec3 direction) {
-  return s.position + s.geometricNormal * (dot(s.geometricNormal, direction) < 0.0 ? -s.error : s.error);
+  const float error = s.error + intersectionError();
+  return s.position + s.geometricNormal * (dot(s.geometricNormal, direction) < 0.0 ? -error : error);
 }
 
 // Transmittance of the segment from the surface to the light's point; either end is moved towards the other by its own error, so
@@ -18,7 +23,7 @@ float traceVisibility(Surface s, LightSample light) {
   const vec3 origin = offsetOrigin(s, light.direction);
   const vec3 d = light.target - origin;
   const vec3 largest = max(abs(light.target), abs(origin));
-  const float targetError = max(largest.x, max(largest.y, largest.z)) * (16.0 / 8388608.0);
+  const float targetError = max(largest.x, max(largest.y, largest.z)) * (16.0 / 8388608.0) + intersectionError();
   const float tMax = 1.0 - targetError * inversesqrt(dot(d, d));
   return tMax > 0.0 ? traceTransmittance(origin, d, tMax) : 1.0;
 }

@@ -24,9 +24,7 @@ LightSample sampleBySolidAngle(Light light, SphericalTriangle t, vec2 u, vec3 po
   s.target = position + s.direction * (dot(normal, light.position - position) / dot(normal, s.direction));
   s.radiance = lit ? light.radiance : vec3(0.0);
   if (lit && (light.kind & kLightTextured) != 0u) {
-    const vec3 d = s.target - light.position;
-    const vec2 barycentrics = vec2(dot(normal, cross(d, light.b)), dot(normal, cross(light.a, d))) / dot(normal, normal);
-    s.radiance *= emissionTexture(light.triangle, clamp(barycentrics, 0.0, 1.0));
+    s.radiance *= emissionTexture(light.triangle, clamp(barycentricsAlong(light, position, s.direction), 0.0, 1.0));
   }
   return s;
 }

@@ -103,10 +103,17 @@ int run(const Words& words) {
     fmt::print("{:9} worst |t| {:5.2f} of {} tiles (bound {:.2f})  mean bias {:+.4f} % (99 %: {:+.4f} … {:+.4f})  a tile to {:.2f} %  {}\n",
                s.name, t.worstT, t.tiles.size(), t.bound, 100 * t.relativeBias, 100 * t.intervalLow, 100 * t.intervalHigh,
                100 * t.detectable, t.passed ? "agrees" : "DIFFERS");
+    const image::TileResult& worst = t.tiles[t.worst];
+    if (!t.passed) {
+      fmt::print("          worst tile at {}, {}: {:.6g} ± {:.2g} for {:.6g} ({:+.2f} %)\n", t.grid.left(t.worst), t.grid.top(t.worst),
+                 worst.mean, worst.standardError, worst.reference, 100 * worst.relativeBias);
+    }
     std::fflush(stdout);
     passed = passed && t.passed;
     j["settings"].push_back({{"name", s.name},
                              {"worst_t", t.worstT},
+                             {"worst_tile", {t.grid.left(t.worst), t.grid.top(t.worst)}},
+                             {"worst_relative", worst.relativeBias},
                              {"bound", t.bound},
                              {"tiles", t.tiles.size()},
                              {"mean_bias", t.relativeBias},

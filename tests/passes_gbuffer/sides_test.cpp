@@ -61,7 +61,7 @@ TEST_P(Sides, OfAnyTransform) {
 }
 
 INSTANTIATE_TEST_SUITE_P(GBuffers, Sides, testing::Values("gbuffer.RayTraced", "gbuffer.Raster"),
-                         [](const auto& info) { return std::string(info.param).substr(8); });
+                         [](const auto& test) { return std::string(test.param).substr(8); });
 
 TEST(Sides, ABackThatIsHiddenShowsWhatIsBehindIt) {
   // A single-sided wall seen from behind, and a sphere behind the wall.

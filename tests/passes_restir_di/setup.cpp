@@ -101,9 +101,9 @@ View stepView(uint32_t width, uint32_t height, const scene::Camera& camera) {
   for (uint32_t y = 0; y < height; ++y) {
     for (uint32_t x = 0; x < width; ++x) {
       if (2 * x < width)
-        view.setOnPlane(x, y, 0.0, Vec(0.7, 0.0, 0.7));
+        view.setOnPlane(x, y, 0.0, Vec(0.9, 0.0, 0.45));
       else
-        view.setOnPlane(x, y, -2.0, Vec(-0.7, 0.1, 0.7), glossy);
+        view.setOnPlane(x, y, -2.0, Vec(-0.9, 0.1, 0.45), glossy);
     }
   }
   return view;
