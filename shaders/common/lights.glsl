@@ -26,6 +26,15 @@ uint pickLight(float u, float v) {
   return v < sceneAlias[cell].threshold ? cell : sceneAlias[cell].alias;
 }
 
+// Picks a light by power with probability 1 - `uniformShare`, else any: a dim light close by is found in time, and no light's
+// density is less than uniformShare / n. mixedPdf() is the probability of what came out.
+uint pickMixed(float u, float v, float uniformShare) {
+  const uint n = lightCount();
+  if (u < uniformShare) return min(uint(u / uniformShare * float(n)), n - 1u);
+  return pickLight((u - uniformShare) / (1.0 - uniformShare), v);
+}
+float mixedPdf(Light light, float uniformShare) { return mix(light.pdf, 1.0 / float(lightCount()), uniformShare); }
+
 // 32-bit place on a light from two uniform numbers.
 uint packPlace(vec2 u) { return uint(u.x * 65536.0) | (uint(u.y * 65536.0) << 16u); }
 

@@ -46,13 +46,13 @@ void run(uvec2 pixel) {
     Random random = randomFor(pixel, 0u);
     for (int i = 0; i < param_candidates; ++i) {
       const vec4 u = next4(random);
-      const uint chosen = pickLight(u.x, u.y);
+      const uint chosen = pickMixed(u.x, u.y, param_uniformShare);
       const Light light = sceneLights[chosen];
       const Candidate c = drawCandidate(light, u.zw, surface.position);
       const float target = targetFunction(surface, c.light);
       if (!(target > 0.0)) continue;
       // 1/M · p̂ / p, with p = pdf of the light times density on it.
-      const float weight = target * c.spread / (light.pdf * float(param_candidates));
+      const float weight = target * c.spread / (mixedPdf(light, param_uniformShare) * float(param_candidates));
       const vec4 keep = next4(random);
       for (uint k = 0u; k < out_reservoirs_count; ++k) {
         offer(selections[k], chosen, c.place, target, weight, false, keep[k]);

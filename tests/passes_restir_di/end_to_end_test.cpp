@@ -89,8 +89,6 @@ void expectUnbiased(const std::string& scene, uint32_t referenceRestarts, const 
     // What could have been found: a bias of three percent in one tile, or of one percent in the picture.
     EXPECT_LT(t.detectable, 0.03);
     EXPECT_LT(t.intervalHigh - t.intervalLow, 0.02);
-    printf("%s: worst %g bound %g bias %g [%g %g] detectable %g\n", s.name, t.worstT, t.bound, t.relativeBias,
-           t.intervalLow, t.intervalHigh, t.detectable);
   }
 }
 

@@ -18,7 +18,7 @@ class Places {
     scene::Scene scene = smallScene({.points = false, .spot = false, .blocker = false});
     scene.meshes.back().primitives[0].indices.resize(3);  // one triangle: the only light
     pass_.size(kSide, kSide).scene(std::move(scene)).camera(view_.camera()).input("surface", view_.packed());
-    pass_.param("candidates", "1").param("visibility", "false");
+    pass_.param("candidates", "1").param("visibility", "false").param("triangles", "area");
   }
   std::vector<uint32_t> at(uint32_t seed, uint32_t frame) {
     pass_.seed(seed).frame(frame).run();

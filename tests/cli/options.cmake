@@ -1,0 +1,2 @@
+# The program itself and what it loads.
+add_dependencies(test_${name} weir weir_plugin_gbuffer weir_plugin_restir_di weir_plugin_output weir_plugin_reference)
