@@ -47,7 +47,7 @@ struct Module {
 class Compiler {
  public:
   /// `cacheFolder` empty: $WEIR_CACHE_DIR, else $XDG_CACHE_HOME/weir, else ~/.cache/weir; "-": no cache.
-  explicit Compiler(std::string cacheFolder = {});
+  explicit Compiler(const std::string& cacheFolder = {});
   Module compile(const CompileRequest& request);
 
  private:
