@@ -119,7 +119,10 @@ TEST(RestirInitial, ChosenLightsFollowResampling) {
     SCOPED_TRACE(candidates);
     PassTest t("restir_di.Initial");
     show(t, view, fourPoints());
-    t.param("candidates", std::to_string(candidates)).param("visibility", "false").seed(3);
+    t.param("candidates", std::to_string(candidates))
+        .param("visibility", "false")
+        .param("uniformShare", "0.25")
+        .seed(3);
     const oracle::World world(t.prepared());
     const size_t n = world.lights().size();
     ASSERT_EQ(n, 4u);
@@ -131,7 +134,7 @@ TEST(RestirInitial, ChosenLightsFollowResampling) {
       source[i] = oracle::luminance(oracle::Vec(world.lights()[i].radiance));
       power += source[i];
     }
-    for (double& p : source) p /= power;
+    for (double& p : source) p = 0.75 * p / power + 0.25 / static_cast<double>(n);
     for (size_t i = 0; i < n; ++i) {
       if (candidates == 1) expected[i] = source[i];
       if (candidates == 1024) expected[i] = target[i] / targets;
