@@ -17,14 +17,16 @@ BACKPORTS=(mesa-vulkan-drivers)
 # An architecture-independent header that Debian has had since 13; it depends on nothing of that release.
 TRIXIE=(libvulkan-memory-allocator-dev)
 
-installed() { dpkg-query -W -f='${Status}\n' "$1" 2>/dev/null | grep -q '^install ok installed$'; }
 mesa_is_new_enough() {
   local version; version=$(dpkg-query -W -f='${Version}' mesa-vulkan-drivers 2>/dev/null) || return 1
   dpkg --compare-versions "$version" ge 25.0
 }
 
 missing=()
-for package in "${BASE[@]}" "${TRIXIE[@]}"; do installed "$package" || missing+=("$package"); done
+present=$(dpkg-query -W -f='${Package} ${Status}\n' "${BASE[@]}" "${TRIXIE[@]}" 2>/dev/null || true)
+for package in "${BASE[@]}" "${TRIXIE[@]}"; do
+  grep -qxF "$package install ok installed" <<<"$present" || missing+=("$package")
+done
 mesa_is_new_enough || missing+=("${BACKPORTS[@]}")
 
 if [ ${#missing[@]} -eq 0 ]; then exit 0; fi

@@ -26,6 +26,15 @@ uint pickLight(float u, float v) {
   return v < sceneAlias[cell].threshold ? cell : sceneAlias[cell].alias;
 }
 
+// Picks a light by power with probability 1 - `uniformShare`, else any: a dim light close by is found in time, and no light's
+// density is less than uniformShare / n. mixedPdf() is the probability of what came out.
+uint pickMixed(float u, float v, float uniformShare) {
+  const uint n = lightCount();
+  if (u < uniformShare) return min(uint(u / uniformShare * float(n)), n - 1u);
+  return pickLight((u - uniformShare) / (1.0 - uniformShare), v);
+}
+float mixedPdf(Light light, float uniformShare) { return mix(light.pdf, 1.0 / float(lightCount()), uniformShare); }
+
 // 32-bit place on a light from two uniform numbers.
 uint packPlace(vec2 u) { return uint(u.x * 65536.0) | (uint(u.y * 65536.0) << 16u); }
 
@@ -83,10 +92,27 @@ LightSample evaluatePunctual(Light light, vec3 position) {
   return s;
 }
 
-LightSample evaluateLight(uint index, uint place, vec3 position) {
-  const Light light = sceneLights[index];
+LightSample evaluateLight(Light light, uint place, vec3 position) {
   if ((light.kind & kKindMask) == kTriangle) return evaluateTriangle(light, placeOnTriangle(place), position);
   return evaluatePunctual(light, position);
+}
+
+LightSample evaluateLight(uint index, uint place, vec3 position) { return evaluateLight(sceneLights[index], place, position); }
+
+// Barycentrics of where a ray from `position` meets a triangle's plane.
+vec2 barycentricsAlong(Light light, vec3 position, vec3 direction) {
+  const vec3 normal = cross(light.a, light.b);
+  const vec3 toCorner = light.position - position;
+  const vec3 d = direction * (dot(normal, toCorner) / dot(normal, direction)) - toCorner;
+  return vec2(dot(normal, cross(d, light.b)), dot(normal, cross(light.a, d))) / dot(normal, normal);
+}
+
+// The place whose placeOnTriangle() lies at these barycentrics, to within its 16 bits a side.
+uint placeAt(vec2 barycentrics) {
+  const vec2 b = clamp(barycentrics, 0.0, 1.0);
+  const float root = min(b.x + b.y, 1.0);
+  const vec2 u = vec2(root * root, root > 0.0 ? min(b.y / root, 1.0) : 0.0);
+  return packPlace(min(u, 65535.5 / 65536.0));
 }
 
 #endif

@@ -1,14 +1,38 @@
 // Brute-force direct light: a shadow ray to EVERY punctual light, and stratified rays to every emissive triangle. Shares with the
-// reservoirs only the BSDF, the light's own formula and the rays; nothing here picks, weighs or reuses.
+// reservoirs only the BSDF, the punctual lights' formula and the rays; nothing here picks, weighs or reuses.
 #include "random.glsl"
 #include "bsdf.glsl"
 #include "visibility.glsl"
+#include "spherical_triangle.glsl"
 
 vec3 arriving(Surface surface, LightSample light) {
   if (light.radiance == vec3(0.0)) return vec3(0.0);
   const vec3 f = bsdfCos(surface, light.direction) * light.radiance;
   if (f == vec3(0.0)) return vec3(0.0);
   return f * traceVisibility(surface, light);
+}
+
+// A stratified sample of a triangle that looks large from the surface, uniform in solid angle: its estimate is bounded, whereas
+// uniform area sampling has unbounded variance close to the light. `area` is the solid angle.
+LightSample sampleBySolidAngle(Light light, SphericalTriangle t, vec2 u, vec3 position) {
+  LightSample s;
+  s.direction = sampleSphericalTriangle(t, u);
+  s.area = t.solidAngle;
+  const vec3 normal = cross(light.a, light.b);
+  const float facing = -dot(normal, s.direction);
+  const bool lit = facing > 0.0 || ((light.kind & kLightDoubleSided) != 0u && facing < 0.0);
+  s.target = position + s.direction * (dot(normal, light.position - position) / dot(normal, s.direction));
+  s.radiance = lit ? light.radiance : vec3(0.0);
+  if (lit && (light.kind & kLightTextured) != 0u) {
+    s.radiance *= emissionTexture(light.triangle, clamp(barycentricsAlong(light, position, s.direction), 0.0, 1.0));
+  }
+  return s;
+}
+
+// A stratified sample uniform in area, for triangles that look small: there it is as good and more exact.
+LightSample sampleByArea(Light light, vec2 u, vec3 position) {
+  const float root = sqrt(u.x);
+  return evaluateTriangle(light, vec2(root * (1.0 - u.y), root * u.y), position);
 }
 
 void run(uvec2 pixel) {
@@ -25,13 +49,17 @@ void run(uvec2 pixel) {
         color += arriving(surface, evaluatePunctual(light, surface.position));
         continue;
       }
+      const SphericalTriangle t = sphericalTriangle(light.position - surface.position, light.a, light.b);
+      const bool large = t.solidAngle > kLeastSolidAngle;
       vec3 sum = vec3(0.0);
       for (int j = 0; j < n * n; ++j) {
         const vec2 u = (vec2(j % n, j / n) + next2(random)) / float(n);
-        const float root = sqrt(u.x);
-        sum += arriving(surface, evaluateTriangle(light, vec2(root * (1.0 - u.y), root * u.y), surface.position));
+        LightSample s;
+        if (large) s = sampleBySolidAngle(light, t, u, surface.position);
+        else s = sampleByArea(light, u, surface.position);
+        sum += arriving(surface, s) * s.area;
       }
-      color += sum * (light.area / float(n * n));
+      color += sum / float(n * n);
     }
   }
   imageStore(out_color, ivec2(pixel), vec4(color, 1.0));

@@ -2,6 +2,36 @@
 // proportion to p̂/p. Several reservoirs of a pixel share the candidates and choose from them independently.
 #include "random.glsl"
 #include "reservoir.glsl"
+#include "spherical_triangle.glsl"
+
+const int kByArea = 0, kBySolidAngle = 1;
+
+// A point on a light, drawn for a surface.
+struct Candidate {
+  LightSample light;
+  uint place;
+  float spread;  // 1 / density of the point: per m² on triangles, 1 for punctual lights
+};
+
+Candidate drawCandidate(Light light, vec2 u, vec3 position) {
+  Candidate c;
+  c.place = packPlace(u);
+  if (param_triangles == kBySolidAngle && (light.kind & kKindMask) == kTriangle) {
+    const SphericalTriangle t = sphericalTriangle(light.position - position, light.a, light.b);
+    if (t.solidAngle > kLeastSolidAngle) {
+      c.place = placeAt(barycentricsAlong(light, position, sampleSphericalTriangle(t, u)));
+      c.light = evaluateLight(light, c.place, position);
+      // dω = cos θ / d² dA turns the uniform density 1/Ω into one per m², at the very point that the 16 bits name.
+      const vec3 d = c.light.target - position;
+      const float cosine = abs(dot(cross(light.a, light.b), c.light.direction)) / (2.0 * light.area);
+      c.spread = cosine > 0.0 ? t.solidAngle * dot(d, d) / cosine : 0.0;
+      return c;
+    }
+  }
+  c.light = evaluateLight(light, c.place, position);
+  c.spread = c.light.area;
+  return c;
+}
 
 void run(uvec2 pixel) {
   const uint index = pixel.y * frameWidth + pixel.x;
@@ -16,16 +46,16 @@ void run(uvec2 pixel) {
     Random random = randomFor(pixel, 0u);
     for (int i = 0; i < param_candidates; ++i) {
       const vec4 u = next4(random);
-      const uint light = pickLight(u.x, u.y);
-      const uint place = packPlace(u.zw);
-      const LightSample s = evaluateLight(light, place, surface.position);
-      const float target = targetFunction(surface, s);
+      const uint chosen = pickMixed(u.x, u.y, param_uniformShare);
+      const Light light = sceneLights[chosen];
+      const Candidate c = drawCandidate(light, u.zw, surface.position);
+      const float target = targetFunction(surface, c.light);
       if (!(target > 0.0)) continue;
-      // 1/M · p̂ / p, with p = pdf of the light / its area.
-      const float weight = target * s.area / (sceneLights[light].pdf * float(param_candidates));
+      // 1/M · p̂ / p, with p = pdf of the light times density on it.
+      const float weight = target * c.spread / (mixedPdf(light, param_uniformShare) * float(param_candidates));
       const vec4 keep = next4(random);
       for (uint k = 0u; k < out_reservoirs_count; ++k) {
-        offer(selections[k], light, place, target, weight, false, keep[k]);
+        offer(selections[k], chosen, c.place, target, weight, false, keep[k]);
       }
     }
   }

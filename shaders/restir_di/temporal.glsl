@@ -18,8 +18,9 @@ void run(uvec2 pixel) {
   // The pixel that holds the point where this surface was.
   const vec2 motion = imageLoad(in_motion, ivec2(pixel)).xy;
   const vec2 point = vec2(pixel) + unpackJitter(packed.roughnessJitter) + motion;
-  const ivec2 before = ivec2(floor(point));
-  bool reuse = all(greaterThanEqual(before, ivec2(0))) && all(lessThan(before, ivec2(frameSize)));
+  // Asked before it is made an integer: what becomes of infinity (behind the old camera) and NaN then is not defined.
+  bool reuse = all(greaterThanEqual(point, vec2(0.0))) && all(lessThan(point, frameSize));
+  const ivec2 before = reuse ? ivec2(point) : ivec2(0);
   const uint beforeIndex = reuse ? uint(before.y) * frameWidth + uint(before.x) : 0u;
   const PackedSurface beforePacked = in_previousSurface[beforeIndex];
   if (reuse) {

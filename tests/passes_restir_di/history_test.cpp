@@ -1,0 +1,167 @@
+// restir_di.Temporal over many frames: the confidence cap, poisoned history, and the mean of f · W.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "setup.h"
+
+namespace weir::test {
+namespace {
+
+using passes::Reservoir;
+
+constexpr uint32_t kSide = 32;
+
+std::vector<float> constantMotion(size_t pixels, float x, float y) {
+  std::vector<float> motion;
+  for (size_t i = 0; i < pixels; ++i) motion.insert(motion.end(), {x, y});
+  return motion;
+}
+
+// Fed back for 200 frames, the confidence is that of the frames so far and never more than the cap and the fresh frame,
+// whether the samples are there or null.
+TEST(RestirHistory, ConfidenceIsCapped) {
+  const View view = planeView(16, 16, frontCamera());
+  for (const int cap : {1, 7, 1024}) {
+    PassTest t("restir_di.Temporal");
+    show(t, view, smallScene({}));
+    t.param("confidenceCap", std::to_string(cap))
+        .feedBack("history", "reservoirs")
+        .input("previousSurface", view.packed());
+    const oracle::World world(t.prepared());
+    oracle::Random random(5);
+    for (int frame = 0; frame < 200; ++frame) {
+      // Fresh ones, some of them null, for the first frames and now and then: they make no difference to the
+      // confidence.
+      if (frame < 4 || frame % 50 == 0) t.input("reservoirs", freshReservoirs(world, view, random, 2, true));
+      t.run();
+      if (frame > 30 && frame % 10 != 9) continue;
+      for (const Reservoir& r : t.output<Reservoir>("reservoirs")) {
+        ASSERT_EQ(r.confidence, 1.0f + static_cast<float>(std::min(frame, cap))) << "frame " << frame;
+        ASSERT_TRUE(isFinite(r));
+      }
+    }
+    t.resetHistory();
+    t.run();
+    for (const Reservoir& r : t.output<Reservoir>("reservoirs")) ASSERT_EQ(r.confidence, 1.0f);
+  }
+}
+
+// Whatever the history holds, what comes out is finite and names a light, the fresh sample survives, and one frame
+// later all is as if nothing had been.
+TEST(RestirHistory, PoisonDoesNotSpread) {
+  const View view = planeView(kSide, kSide, frontCamera());
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const Reservoir poison[] = {{0, 0, nan, 5},          {0, 0, infinity, 5},
+                              {0, 0, -infinity, 5},    {0, 0, 1, nan},
+                              {0, 0, 1, infinity},     {0, 0, 1, -3},
+                              {0x7fffffff, 0, 1, 5},   {0xffffffff, 0, 1, 5},
+                              {8, 0xffffffff, 1, 5},   {0x80000000, 7, nan, nan},
+                              {3, 0, -1, 5},           {2, 0xdeadbeef, 3e38f, 5},
+                              {0xdeadbeef, 0, nan, 2}, {0, 0, infinity, infinity},
+                              {4, 1, 1, 3e38f}};
+  for (const char* mis : {"biased", "pairwise"}) {
+    PassTest t("restir_di.Temporal");
+    show(t, view, smallScene({}));
+    t.param("mis", mis)
+        .param("confidenceCap", "6")
+        .feedBack("history", "reservoirs")
+        .input("previousSurface", view.packed());
+    const oracle::World world(t.prepared());
+    ASSERT_EQ(world.lights().size(), 8u);
+    oracle::Random random(6);
+    const std::vector<Reservoir> fresh = freshReservoirs(world, view, random, 16, false);
+    t.input("reservoirs", fresh).run(3);
+    std::vector<Reservoir> bad = t.output<Reservoir>("reservoirs");
+    for (size_t i = 0; i < bad.size(); ++i) bad[i] = poison[i % std::size(poison)];
+    t.executor().writeResource("it.reservoirs", std::as_bytes(std::span(bad)));
+    for (int frame = 0; frame < 3; ++frame) {
+      t.run();
+      const std::vector<Reservoir> out = t.output<Reservoir>("reservoirs");
+      for (size_t i = 0; i < out.size(); ++i) {
+        SCOPED_TRACE(testing::Message() << mis << ", frame " << frame << ", poison " << i % std::size(poison));
+        ASSERT_TRUE(isFinite(out[i]));
+        ASSERT_LT(lightOf(out[i]), 8u);
+        ASSERT_GE(out[i].confidence, 1.0f);
+        ASSERT_LE(out[i].confidence, 7.0f);
+        // A huge but finite weight is a sample like any other; all else must leave the fresh one.
+        ASSERT_TRUE(out[i].weight > 0.0f || fresh[i].weight == 0.0f);
+      }
+    }
+  }
+}
+
+/// One frame on fresh reservoirs and a history made by the oracle where last frame's camera and surfaces were, or
+/// several frames fed back. Pixels draw from reservoirs of their own, so that each is an independent sample.
+struct Experiment {
+  const char* mis;
+  bool visibility;  ///< shadowed truth; samples are tested, and the pass is asked to
+  bool step;        ///< surfaces that differ between the reservoirs; else one plane for both
+  int fedBack;      ///< 0: the history is given
+};
+
+Sample run(const Experiment& e) {
+  scene::Camera camera = frontCamera(), before = camera;
+  if (e.step && e.fedBack == 0) before.eye = {0.6f, 0.3f, 5.2f};
+  const View view = e.step ? stepView(kSide, kSide, camera) : planeView(kSide, kSide, camera);
+  const View previous = e.step ? stepView(kSide, kSide, before) : view;
+  PassTest t("restir_di.Temporal");
+  show(t, view, smallScene({}));
+  t.param("depthThreshold", "10").param("normalThreshold", "180").param("mis", e.mis).seed(23);
+  t.param("visibilityRays", e.visibility ? "true" : "false").param("confidenceCap", "4");
+  if (e.fedBack > 0) t.feedBack("history", "reservoirs");
+  // Along and across the step: many pixels find their history on the other side.
+  t.input("motion", constantMotion(view.pixels(), 11.0f, 3.0f)).input("previousSurface", previous.packed());
+  const oracle::World world(t.prepared());
+  const std::vector<double> truth = directLight(world, view, e.visibility);
+  double total = 0.0;
+  for (double value : truth) total += value / static_cast<double>(truth.size());
+  oracle::Random random(99);
+  Sample sample;
+  for (int restart = 0; restart < 12; ++restart) {
+    if (e.fedBack == 0) {
+      t.input("history", freshReservoirs(world, previous, random, 4, e.visibility, 3.0));
+      t.camera(before).run();
+      t.camera(camera).input("reservoirs", freshReservoirs(world, view, random, 4, e.visibility)).run();
+    } else {
+      t.resetHistory();
+      for (int frame = 0; frame < e.fedBack; ++frame)
+        t.input("reservoirs", freshReservoirs(world, view, random, 4, e.visibility)).run();
+    }
+    const std::vector<Reservoir> out = t.output<Reservoir>("reservoirs");
+    for (size_t i = 0; i < out.size(); ++i) {
+      EXPECT_TRUE(isFinite(out[i]));
+      sample.add((estimate(world, view[i], out[i], false) - truth[i]) / total);
+    }
+  }
+  return sample;
+}
+
+// Chance of a false alarm of each test: 1e-4.
+TEST(RestirHistory, PairwiseIsUnbiasedWithoutOcclusion) {
+  const Sample once = run({"pairwise", false, true, 0}), fed = run({"pairwise", false, true, 6});
+  EXPECT_TRUE(agrees(once, 0.0, 1e-4, 2));
+  EXPECT_TRUE(agrees(fed, 0.0, 1e-4, 2));
+  EXPECT_LT(std::max(once.standardError(), fed.standardError()), 0.015) << "too few samples to find anything";
+}
+TEST(RestirHistory, PairwiseWithRaysIsUnbiasedUnderOcclusion) {
+  const Sample once = run({"pairwise", true, true, 0}), fed = run({"pairwise", true, true, 6});
+  EXPECT_TRUE(agrees(once, 0.0, 1e-4, 2));
+  EXPECT_TRUE(agrees(fed, 0.0, 1e-4, 2));
+  EXPECT_LT(std::max(once.standardError(), fed.standardError()), 0.015) << "too few samples to find anything";
+}
+TEST(RestirHistory, BiasedIsRightWhereSurfacesAreAlike) {
+  EXPECT_TRUE(agrees(run({"biased", false, false, 0}), 0.0, 1e-4));
+}
+// The power of the above: the same picture, merged by confidence alone, is too dark. Chance to miss it: next to
+// nothing.
+TEST(RestirHistory, BiasedIsBiasedAcrossAStep) {
+  const Sample sample = run({"biased", false, true, 0});
+  EXPECT_LT(sample.mean(), -0.02);
+  EXPECT_FALSE(agrees(sample, 0.0, 1e-4));
+}
+
+}  // namespace
+}  // namespace weir::test
