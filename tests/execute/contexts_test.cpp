@@ -45,12 +45,16 @@ void expectWords(const std::string& text, std::initializer_list<const char*> wor
 }
 
 TEST(Contexts, AskingForWhatIsNotDeclaredNamesPassAndName) {
-  expectWords(thrown([](PrepareContext& c) { (void)c.integer("amuont"); }), {"it", "own.Scripted", "'amuont'", "'amount'"});
-  expectWords(thrown([](PrepareContext& c) { (void)c.number("amount"); }), {"it", "own.Scripted", "'amount'", "another type"});
+  expectWords(thrown([](PrepareContext& c) { (void)c.integer("amuont"); }),
+              {"it", "own.Scripted", "'amuont'", "'amount'"});
+  expectWords(thrown([](PrepareContext& c) { (void)c.number("amount"); }),
+              {"it", "own.Scripted", "'amount'", "another type"});
   expectWords(thrown([](PrepareContext& c) { (void)c.connected("perhaps"); }), {"it", "own.Scripted", "'perhaps'"});
-  expectWords(thrown([](PrepareContext& c) { (void)c.rayKernel("any.glsl"); }), {"it", "own.Scripted", "scene.acceleration"});
+  expectWords(thrown([](PrepareContext& c) { (void)c.rayKernel("any.glsl"); }),
+              {"it", "own.Scripted", "scene.acceleration"});
   expectWords(thrown([](PrepareContext& c) { (void)c.rasterKernel("any.glsl", "nowhere"); }), {"it", "nowhere"});
-  expectWords(thrown([](PrepareContext&) {}, [](RecordContext& c) { c.launch(Kernel{}); }), {"it", "own.Scripted", "never prepared"});
+  expectWords(thrown([](PrepareContext&) {}, [](RecordContext& c) { c.launch(Kernel{}); }),
+              {"it", "own.Scripted", "never prepared"});
 }
 
 TEST(Contexts, WhatIsDeclaredIsAnswered) {
@@ -93,8 +97,11 @@ TEST(Contexts, ScratchComesBeforeKernelsAndBindsByName) {
                   },
                   {}, folder.path()),
               {"it", "'late'", "before the first kernel"});
-  expectWords(thrown([](PrepareContext& c) { (void)c.kernel("ok.glsl", {.bind = {{"out_to", "scratch_none"}}, .defines = {}, .sources = {}}); },
-                     {}, folder.path()),
+  expectWords(thrown(
+                  [](PrepareContext& c) {
+                    (void)c.kernel("ok.glsl", {.bind = {{"out_to", "scratch_none"}}, .defines = {}, .sources = {}});
+                  },
+                  {}, folder.path()),
               {"it", "'scratch_none'"});
 }
 
@@ -137,8 +144,9 @@ std::string preludeOf(const WeirPassEntry& entry, const std::string& inputs, Ker
   registry.add("own", entries);
   std::vector<graph::Diagnostic> diagnostics;
   const std::string output = registry.find(std::string("own.") + entry.name)->outputs.at(0).name;
-  const std::string json = std::string(R"({"version": 1, "name": "t", "passes": {"feeder": {"type": "own.Feeder"}, "it": {"type": "own.)") +
-                           entry.name + R"(", "inputs": {)" + inputs + R"(}}}, "outputs": {"o": "it.)" + output + "\"}}";
+  const std::string json =
+      std::string(R"({"version": 1, "name": "t", "passes": {"feeder": {"type": "own.Feeder"}, "it": {"type": "own.)") +
+      entry.name + R"(", "inputs": {)" + inputs + R"(}}}, "outputs": {"o": "it.)" + output + "\"}}";
   const auto description = graph::parse(json, "t", diagnostics);
   const graph::CompiledGraph compiled = graph::compile(description, registry.catalog(), 8, 8, diagnostics);
   if (!diagnostics.empty()) throw graph::GraphError(diagnostics);
@@ -154,13 +162,16 @@ std::string preludeOf(const WeirPassEntry& entry, const std::string& inputs, Ker
   return "no such pass";
 }
 
-bool holds(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+bool holds(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
 
 TEST(Prelude, NamesEverythingThatIsDeclared) {
   const std::string s = preludeOf(passEntry<Plain>("Plain"), R"("left": "feeder.words")");
-  for (const char* words : {"in_left[]", "readonly buffer Block_in_left", "rg32f)  uniform image2D out_right", "scratch_spare[]",
-                            "scratch_spare_count = 3u", "sampler3D texture_lut", "param_one", "param_three", "#include \"body.glsl\"",
-                            "layout(constant_id = 0) const int param_two", "struct Word"}) {
+  for (const char* words :
+       {"in_left[]", "readonly buffer Block_in_left", "rg32f)  uniform image2D out_right", "scratch_spare[]",
+        "scratch_spare_count = 3u", "sampler3D texture_lut", "param_one", "param_three", "#include \"body.glsl\"",
+        "layout(constant_id = 0) const int param_two", "struct Word"}) {
     EXPECT_TRUE(holds(s, words)) << words << " in:\n" << s;
   }
   EXPECT_FALSE(holds(s, "param_name")) << "texts have no place in shaders";
@@ -175,11 +186,21 @@ TEST(Prelude, LeavesOutWhatIsNotDeclared) {
     WeirPassEntry entry;
     std::vector<const char*> there, absent;
   } cases[] = {
-      {passEntry<Plain>("Plain"), {}, {"scenePositions", "sceneMaterials", "sceneLights", "Camera camera;", "frameIndex", "CAN_TRACE"}},
-      {passEntry<Needs<Need::SceneGeometry>>("G"), {"scenePositions", "sceneInstances"}, {"sceneMaterials[]", "sceneLights[]", "Camera camera;"}},
-      {passEntry<Needs<Need::SceneMaterials>>("M"), {"sceneMaterials", "sceneTextures"}, {"sceneLights[]", "sceneAcceleration"}},
-      {passEntry<Needs<Need::SceneLights>>("L"), {"sceneLights[]", "sceneAlias[]"}, {"sceneAcceleration", "frameIndex"}},
-      {passEntry<Needs<Need::FrameCamera>>("C"), {"Camera camera;"}, {"Camera previousCamera;", "scenePositions", "frameSeed"}},
+      {passEntry<Plain>("Plain"),
+       {},
+       {"scenePositions", "sceneMaterials", "sceneLights", "Camera camera;", "frameIndex", "CAN_TRACE"}},
+      {passEntry<Needs<Need::SceneGeometry>>("G"),
+       {"scenePositions", "sceneInstances"},
+       {"sceneMaterials[]", "sceneLights[]", "Camera camera;"}},
+      {passEntry<Needs<Need::SceneMaterials>>("M"),
+       {"sceneMaterials", "sceneTextures"},
+       {"sceneLights[]", "sceneAcceleration"}},
+      {passEntry<Needs<Need::SceneLights>>("L"),
+       {"sceneLights[]", "sceneAlias[]"},
+       {"sceneAcceleration", "frameIndex"}},
+      {passEntry<Needs<Need::FrameCamera>>("C"),
+       {"Camera camera;"},
+       {"Camera previousCamera;", "scenePositions", "frameSeed"}},
       {passEntry<Needs<Need::FrameIndex>>("I"), {"frameIndex", "frameSeed"}, {"Camera camera;", "scenePositions"}},
   };
   for (const auto& c : cases) {
@@ -193,9 +214,11 @@ TEST(Prelude, LeavesOutWhatIsNotDeclared) {
 TEST(Prelude, OnlyRayKernelsCanTrace) {
   const WeirPassEntry rays = passEntry<Needs<Need::SceneAcceleration>>("A");
   EXPECT_FALSE(holds(preludeOf(rays, ""), "sceneAcceleration"));
-  const std::string pipeline = preludeOf(rays, "", KernelKind::RayPipeline), query = preludeOf(rays, "", KernelKind::RayQuery);
+  const std::string pipeline = preludeOf(rays, "", KernelKind::RayPipeline),
+                    query = preludeOf(rays, "", KernelKind::RayQuery);
   for (const std::string& s : {pipeline, query}) EXPECT_TRUE(holds(s, "sceneAcceleration") && holds(s, "CAN_TRACE"));
-  EXPECT_TRUE(holds(pipeline, "TRACE_PIPELINE") && !holds(pipeline, "TRACE_QUERY") && holds(pipeline, "gl_LaunchIDEXT"));
+  EXPECT_TRUE(holds(pipeline, "TRACE_PIPELINE") && !holds(pipeline, "TRACE_QUERY") &&
+              holds(pipeline, "gl_LaunchIDEXT"));
   EXPECT_TRUE(holds(query, "TRACE_QUERY") && !holds(query, "TRACE_PIPELINE"));
 }
 
@@ -219,7 +242,7 @@ TEST(Prelude, ParametersAreFourBytesEachAfterTheLaunch) {
 TEST(Prelude, TooManyParametersAreRefused) {
   PassDescription d;
   d.type = "own.Many";
-  for (int i = 0; i < 28; ++i) d.param("p" + std::to_string(i), 0);
+  for (int i = 0; i < 28; ++i) d.param(std::string(static_cast<size_t>(i) + 1, 'p'), 0);
   EXPECT_EQ(execute::pushBytes(d), 128u);
   d.param("more", 0);
   try {

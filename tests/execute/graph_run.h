@@ -48,20 +48,26 @@ class GraphRun {
     std::string shaders = sourcePath("tests/execute/shaders");
   };
   /// `passes` is the graph's "passes", JSON, `output` a port of one of them; the entries' types are "own.<name>".
-  GraphRun(const std::string& passes, const std::string& output, const std::vector<WeirPassEntry>& entries, Options options) : guard_(*device_) {
+  GraphRun(const std::string& passes, const std::string& output, const std::vector<WeirPassEntry>& entries,
+           Options options)
+      : guard_(*device_) {
     registry_.add("own", entries, options.shaders);
-    const std::string json = R"({"version": 1, "name": "test", "passes": )" + passes + R"(, "outputs": {"o": ")" + output + "\"}}";
+    const std::string json =
+        R"({"version": 1, "name": "test", "passes": )" + passes + R"(, "outputs": {"o": ")" + output + "\"}}";
     std::vector<graph::Diagnostic> diagnostics;
     graph::Description description = graph::parse(json, "test", diagnostics);
     graph::apply(description, options.overrides, diagnostics);
-    graph::CompiledGraph compiled = graph::compile(description, registry_.catalog(), options.width, options.height, diagnostics);
+    graph::CompiledGraph compiled =
+        graph::compile(description, registry_.catalog(), options.width, options.height, diagnostics);
     if (!diagnostics.empty()) throw graph::GraphError(diagnostics);
     source_ = std::move(options.scene);
     prepared_ = scene::prepareScene(source_);
-    scene_ = std::make_unique<scene::SceneGpu>(*device_, source_, prepared_, device_->capabilities().accelerationStructure);
+    scene_ =
+        std::make_unique<scene::SceneGpu>(*device_, source_, prepared_, device_->capabilities().accelerationStructure);
     execute::ExecutorOptions executorOptions;
     executorOptions.backend = trace::chooseBackend("auto", *device_);
-    executor_ = std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(compiled), executorOptions);
+    executor_ = std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(compiled),
+                                                    executorOptions);
   }
   /// Submits frames without waiting for any.
   void run(uint32_t frames = 1) {

@@ -94,10 +94,13 @@ struct Link {
   const char *name, *from, *image, *old;  ///< names of other stages, or null
 };
 // Chains, a diamond, and edges across the frame both ways: 16 kernels.
-const Link kLinks[] = {{"a", nullptr, nullptr, "h"}, {"b", "a", nullptr, nullptr}, {"c", "a", "a", "c"}, {"d", "b", "c", nullptr},
-                       {"e", "c", "d", "b"},         {"f", "d", "b", "e"},         {"g", "f", "e", nullptr}, {"h", "g", "a", "a"}};
+const Link kLinks[] = {{"a", nullptr, nullptr, "h"}, {"b", "a", nullptr, nullptr}, {"c", "a", "a", "c"},
+                       {"d", "b", "c", nullptr},     {"e", "c", "d", "b"},         {"f", "d", "b", "e"},
+                       {"g", "f", "e", nullptr},     {"h", "g", "a", "a"}};
 
-uint32_t stir(uint32_t x) { return hashOf(x); }
+uint32_t stir(uint32_t x) {
+  return hashOf(x);
+}
 
 TEST(History, ChainsOfKernelsReadWhatTheyShould) {
   constexpr uint32_t kWidth = 61, kHeight = 37, kPixels = kWidth * kHeight, kFrames = 5;  // fits no group of 8 × 8
@@ -106,7 +109,8 @@ TEST(History, ChainsOfKernelsReadWhatTheyShould) {
     const Link& l = kLinks[i];
     std::string inputs;
     const auto input = [&](const char* port, const char* stage, const std::string& what) {
-      if (stage != nullptr) inputs += (inputs.empty() ? "\"" : ", \"") + std::string(port) + "\": \"" + stage + what + "\"";
+      if (stage != nullptr)
+        inputs += (inputs.empty() ? "\"" : ", \"") + std::string(port) + "\": \"" + stage + what + "\"";
     };
     input("from", l.from, ".to");
     input("image", l.image, ".image");

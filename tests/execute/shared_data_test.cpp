@@ -49,7 +49,8 @@ scene::Scene varied() {
     m.emission = {f, 2 * f, 3 * f};
     m.doubleSided = i == 1;
     const auto white = [](uint32_t, uint32_t) { return glm::u8vec4(255); };
-    for (scene::TextureSlot* slot : {&m.emissiveTexture, &m.baseColorTexture, &m.normalTexture, &m.metallicRoughnessTexture}) {
+    for (scene::TextureSlot* slot :
+         {&m.emissiveTexture, &m.baseColorTexture, &m.normalTexture, &m.metallicRoughnessTexture}) {
       slot->texture = b.texture(2, 2, white);
     }
     b.add(quad({0, f, 0}, {1, f, 0.5f}, {1, f + 1, 1}, {0.2f, f + 1, 0}, b.material(m)));
@@ -168,8 +169,9 @@ TEST(SharedData, StridesOfTheScene) {
   const WeirPassEntry entries[] = {passEntry<Dump>("Dump")};
   registry.add("own", entries);
   std::vector<graph::Diagnostic> diagnostics;
-  const auto description =
-      graph::parse(R"({"version": 1, "name": "t", "passes": {"it": {"type": "own.Dump"}}, "outputs": {"o": "it.words"}})", "t", diagnostics);
+  const auto description = graph::parse(
+      R"({"version": 1, "name": "t", "passes": {"it": {"type": "own.Dump"}}, "outputs": {"o": "it.words"}})", "t",
+      diagnostics);
   const graph::CompiledGraph compiled = graph::compile(description, registry.catalog(), 8, 8, diagnostics);
   ASSERT_TRUE(diagnostics.empty());
   execute::KernelInterface interface;

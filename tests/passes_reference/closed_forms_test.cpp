@@ -1,4 +1,5 @@
-// reference.AllLights against closed forms and quadrature in double precision. The expected BSDF is written from glTF 2.0, appendix B.
+// reference.AllLights against closed forms and quadrature in double precision. The expected BSDF is written from
+// glTF 2.0, appendix B.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +23,8 @@ glm::dvec3 bsdfCos(const OracleSurface& s, const glm::dvec3& view, const glm::dv
   const glm::dvec3 h = glm::normalize(light + view);
   const double nh = glm::dot(s.normal, h), vh = glm::dot(view, h), a = std::max(s.roughness * s.roughness, 1.0 / 2048);
   const double d = a * a / (kPi * std::pow(nh * nh * (a * a - 1) + 1, 2));
-  const double v = 0.5 / (nl * std::sqrt(nv * nv * (1 - a * a) + a * a) + nv * std::sqrt(nl * nl * (1 - a * a) + a * a));
+  const double v =
+      0.5 / (nl * std::sqrt(nv * nv * (1 - a * a) + a * a) + nv * std::sqrt(nl * nl * (1 - a * a) + a * a));
   const glm::dvec3 f = s.f0 + (1.0 - s.f0) * std::pow(1 - vh, 5);
   return ((1.0 - f) * s.diffuse / kPi + f * d * v) * nl;
 }
@@ -93,16 +95,17 @@ TEST(AllLights, PointLightOnAPlane) {
     const glm::vec3 at(0.4f, 1.2f, -0.3f);
     b.scene.lights.push_back({"", scene::LightKind::Point, kIntensity, at});
     const Picture p = render(b.scene, kAbove);
-    const size_t n = forSurfaces(b.scene, kAbove, p, [&](uint32_t i, const OracleSurface& s, glm::dvec3 view, glm::dvec3 color) {
-      const glm::dvec3 d = glm::dvec3(at) - s.position;
-      expectNear(color, bsdfCos(s, view, glm::normalize(d)) * glm::dvec3(kIntensity) / glm::dot(d, d), 6e-3, i);
-    });
+    const size_t n =
+        forSurfaces(b.scene, kAbove, p, [&](uint32_t i, const OracleSurface& s, glm::dvec3 view, glm::dvec3 color) {
+          const glm::dvec3 d = glm::dvec3(at) - s.position;
+          expectNear(color, bsdfCos(s, view, glm::normalize(d)) * glm::dvec3(kIntensity) / glm::dot(d, d), 6e-3, i);
+        });
     EXPECT_GT(n, 300u);
   }
 }
 
-// Without specular reflection (F0 is 4 % all the same) I ρ cosθ/(π d²) must come out of the diffuse part: straight above, where
-// Fresnel's term is least, the whole differs from it by what the formulas say, a few per cent.
+// Without specular reflection (F0 is 4 % all the same) I ρ cosθ/(π d²) must come out of the diffuse part: straight
+// above, where Fresnel's term is least, the whole differs from it by what the formulas say, a few per cent.
 TEST(AllLights, LambertIsWhatTheDiffusePartIs) {
   Builder b = floorOf({1, 1, 1}, 0, 1);
   b.scene.lights.push_back({"", scene::LightKind::Point, glm::vec3(5), {0, 1.5f, 0}});
@@ -120,15 +123,17 @@ TEST(AllLights, DirectionalLight) {
   const glm::vec3 way = glm::normalize(glm::vec3(0.3f, -1, 0.4f));
   b.scene.lights.push_back({"", scene::LightKind::Directional, kIntensity, {}, way});
   const Picture p = render(b.scene, kAbove);
-  const size_t n = forSurfaces(b.scene, kAbove, p, [&](uint32_t i, const OracleSurface& s, glm::dvec3 view, glm::dvec3 color) {
-    expectNear(color, bsdfCos(s, view, -glm::dvec3(way)) * glm::dvec3(kIntensity), 6e-3, i);
-  });
+  const size_t n =
+      forSurfaces(b.scene, kAbove, p, [&](uint32_t i, const OracleSurface& s, glm::dvec3 view, glm::dvec3 color) {
+        expectNear(color, bsdfCos(s, view, -glm::dvec3(way)) * glm::dvec3(kIntensity), 6e-3, i);
+      });
   EXPECT_GT(n, 300u);
 }
 
 TEST(AllLights, SpotConesAndRange) {
   Builder b = floorOf({0.6f, 0.6f, 0.6f}, 0, 1);
-  scene::PunctualLight spot{"", scene::LightKind::Spot, kIntensity, {0, 1.5f, 0}, glm::normalize(glm::vec3(0.1f, -1, 0)), 2.2f};
+  scene::PunctualLight spot{
+      "", scene::LightKind::Spot, kIntensity, {0, 1.5f, 0}, glm::normalize(glm::vec3(0.1f, -1, 0)), 2.2f};
   spot.innerCone = 0.25f;
   spot.outerCone = 0.5f;
   b.scene.lights.push_back(spot);
@@ -161,7 +166,8 @@ TEST(AllLights, RangeEndsAPointLight) {
   forSurfaces(b.scene, kAbove, p, [&](uint32_t i, const OracleSurface& s, glm::dvec3 view, glm::dvec3 color) {
     const glm::dvec3 d = glm::dvec3(0, 0.5, 0) - s.position;
     const double window = std::clamp(1 - std::pow(glm::length(d) / 0.8, 4), 0.0, 1.0);
-    expectNear(color, bsdfCos(s, view, glm::normalize(d)) * glm::dvec3(kIntensity) * (window / glm::dot(d, d)), 0.01, i);
+    expectNear(color, bsdfCos(s, view, glm::normalize(d)) * glm::dvec3(kIntensity) * (window / glm::dot(d, d)), 0.01,
+               i);
     dark += window == 0;
     if (window == 0) {
       EXPECT_EQ(color, glm::dvec3(0));
@@ -203,8 +209,8 @@ void addLamp(Builder& b, bool facesDown, bool doubleSided, const glm::vec3& emis
   b.add(facesDown ? quad(p0, p1, p2, p3, material) : quad(p0, p3, p2, p1, material));
 }
 
-// Mean over the picture of samples: 16² strata on 2 triangles × 4 frames for 300 pixels and more. Stratified sampling of a smooth
-// integrand leaves less than 1e-3 a pixel; bounds are ten times that.
+// Mean over the picture of samples: 16² strata on 2 triangles × 4 frames for 300 pixels and more. Stratified sampling
+// of a smooth integrand leaves less than 1e-3 a pixel; bounds are ten times that.
 TEST(AllLights, QuadLightByLambertsFormulaAndQuadrature) {
   const scene::Camera camera = lookAt({0.2f, 0.6f, 2.0f}, {0, 0, 0}, 40);
   for (const auto& [down, doubleSided] : {std::pair(true, false), {true, true}, {false, true}}) {
@@ -218,9 +224,10 @@ TEST(AllLights, QuadLightByLambertsFormulaAndQuadrature) {
       ++n;
       const glm::dvec3 expected = quadrature(s, view, {-0.4, 1, -0.3}, {0.8, 0, 0}, {0, 0, 0.6}, {4, 3, 2}, true, 48);
       expectNear(color, expected, 0.02, i);
-      // The diffuse part alone is albedo/π times Lambert's irradiance, less what Fresnel takes: between 85 % and 97 % of it at these
-      // angles, plus the specular part.
-      const double irradiance = lambertPolygon(s.position, {0, 1, 0}, {{-0.4, 1, -0.3}, {0.4, 1, -0.3}, {0.4, 1, 0.3}, {-0.4, 1, 0.3}});
+      // The diffuse part alone is albedo/π times Lambert's irradiance, less what Fresnel takes: between 85 % and 97 %
+      // of it at these angles, plus the specular part.
+      const double irradiance =
+          lambertPolygon(s.position, {0, 1, 0}, {{-0.4, 1, -0.3}, {0.4, 1, -0.3}, {0.4, 1, 0.3}, {-0.4, 1, 0.3}});
       const double lambert = 0.8 / kPi * irradiance * 4;
       EXPECT_GT(color.x, 0.8 * lambert);
       EXPECT_LT(color.x, 1.2 * lambert);
@@ -278,8 +285,9 @@ TEST(AllLights, TexturedEmitter) {
   const scene::Camera camera = lookAt({0.2f, 0.6f, 2.0f}, {0, 0, 0}, 40);
   Builder b = floorOf({0.8f, 0.8f, 0.8f}, 0, 1);
   addLamp(b, true, false);
-  const int half = b.texture(2, 1, [](uint32_t x, uint32_t) { return x == 0 ? glm::u8vec4(0, 0, 0, 255) : glm::u8vec4(255); },
-                             scene::Filter::Nearest, scene::Wrap::ClampToEdge);
+  const int half = b.texture(
+      2, 1, [](uint32_t x, uint32_t) { return x == 0 ? glm::u8vec4(0, 0, 0, 255) : glm::u8vec4(255); },
+      scene::Filter::Nearest, scene::Wrap::ClampToEdge);
   b.scene.materials.back().emissiveTexture.texture = half;
   const Picture p = render(b.scene, camera, 16, 8);
   size_t n = 0;

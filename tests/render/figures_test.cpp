@@ -86,8 +86,8 @@ TEST(FrameMean, PassesOnWhatIsNotFinite) {
   EXPECT_TRUE(std::isnan(p.rgba[2]));
 }
 
-// A collision gives two restarts the same picture and halves their weight in the error. 1e4 numbers of 32 bits collide with
-// probability 1.2 %; the numbers are the same in every run, and don't.
+// A collision gives two restarts the same picture and halves their weight in the error. 1e4 numbers of 32 bits collide
+// with probability 1.2 %; the numbers are the same in every run, and don't.
 TEST(RestartSeed, AreDistinctAndKeepTheFirst) {
   for (const uint32_t seed : {0u, 1u, 12345u}) {
     EXPECT_EQ(restartSeed(seed, 0), seed);
