@@ -1,2 +1,8 @@
-# The program itself and what it loads.
-add_dependencies(test_${name} weir weir_plugin_gbuffer weir_plugin_restir_di weir_plugin_output weir_plugin_reference)
+# The program itself and every plugin that it finds beside it.
+add_dependencies(test_${name} weir)
+file(GLOB cli_plugins CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/plugins/*/CMakeLists.txt)
+foreach(cli_plugin IN LISTS cli_plugins)
+  get_filename_component(cli_plugin ${cli_plugin} DIRECTORY)
+  get_filename_component(cli_plugin ${cli_plugin} NAME)
+  add_dependencies(test_${name} weir_plugin_${cli_plugin})
+endforeach()

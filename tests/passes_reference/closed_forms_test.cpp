@@ -200,45 +200,54 @@ double lambertPolygon(const glm::dvec3& at, const glm::dvec3& normal, const std:
 }
 
 /// A quad lamp over the floor that faces down (or up), of these kinds.
-void addLamp(Builder& b, bool facesDown, bool doubleSided, const glm::vec3& emission = glm::vec3(4, 3, 2)) {
+void addLamp(Builder& b, bool facesDown, bool doubleSided, float size = 1) {
   scene::Material m;
-  m.emission = emission;
+  m.emission = glm::vec3(4, 3, 2);
   m.doubleSided = doubleSided;
   const int material = b.material(m);
-  const glm::vec3 p0(-0.4f, 1, -0.3f), p1(0.4f, 1, -0.3f), p2(0.4f, 1, 0.3f), p3(-0.4f, 1, 0.3f);
+  const float x = 0.4f * size, z = 0.3f * size;
+  const glm::vec3 p0(-x, 1, -z), p1(x, 1, -z), p2(x, 1, z), p3(-x, 1, z);
   b.add(facesDown ? quad(p0, p1, p2, p3, material) : quad(p0, p3, p2, p1, material));
 }
 
 // Mean over the picture of samples: 16² strata on 2 triangles × 4 frames for 300 pixels and more. Stratified sampling
 // of a smooth integrand leaves less than 1e-3 a pixel; bounds are ten times that.
+// The small lamp is one that the pass samples by area, the large one it samples by solid angle.
 TEST(AllLights, QuadLightByLambertsFormulaAndQuadrature) {
   const scene::Camera camera = lookAt({0.2f, 0.6f, 2.0f}, {0, 0, 0}, 40);
-  for (const auto& [down, doubleSided] : {std::pair(true, false), {true, true}, {false, true}}) {
-    SCOPED_TRACE(testing::Message() << (down ? "faces down" : "faces up") << (doubleSided ? ", double-sided" : ""));
-    Builder b = floorOf({0.8f, 0.8f, 0.8f}, 0, 1);
-    addLamp(b, down, doubleSided);
-    const Picture p = render(b.scene, camera, 16, 4);
-    size_t n = 0;
-    forSurfaces(b.scene, camera, p, [&](uint32_t i, const OracleSurface& s, glm::dvec3 view, glm::dvec3 color) {
-      if (s.position.y > 0.5) return;  // the lamp itself
-      ++n;
-      const glm::dvec3 expected = quadrature(s, view, {-0.4, 1, -0.3}, {0.8, 0, 0}, {0, 0, 0.6}, {4, 3, 2}, true, 48);
-      expectNear(color, expected, 0.02, i);
-      // The diffuse part alone is albedo/π times Lambert's irradiance, less what Fresnel takes: between 85 % and 97 %
-      // of it at these angles, plus the specular part.
-      const double irradiance =
-          lambertPolygon(s.position, {0, 1, 0}, {{-0.4, 1, -0.3}, {0.4, 1, -0.3}, {0.4, 1, 0.3}, {-0.4, 1, 0.3}});
-      const double lambert = 0.8 / kPi * irradiance * 4;
-      EXPECT_GT(color.x, 0.8 * lambert);
-      EXPECT_LT(color.x, 1.2 * lambert);
-    });
-    EXPECT_GT(n, 150u);
+  for (const double size : {1.0, 0.02}) {
+    for (const auto& [down, doubleSided] : {std::pair(true, false), {true, true}, {false, true}}) {
+      SCOPED_TRACE(testing::Message() << (down ? "faces down" : "faces up") << (doubleSided ? ", double-sided" : "")
+                                      << ", size " << size);
+      Builder b = floorOf({0.8f, 0.8f, 0.8f}, 0, 1);
+      addLamp(b, down, doubleSided, static_cast<float>(size));
+      const Picture p = render(b.scene, camera, 16, 4);
+      const double x = 0.4 * size, z = 0.3 * size;
+      size_t n = 0;
+      forSurfaces(b.scene, camera, p, [&](uint32_t i, const OracleSurface& s, glm::dvec3 view, glm::dvec3 color) {
+        if (s.position.y > 0.5) return;  // the lamp itself
+        ++n;
+        const glm::dvec3 expected =
+            quadrature(s, view, {-x, 1, -z}, {2 * x, 0, 0}, {0, 0, 2 * z}, {4, 3, 2}, true, size < 1 ? 8 : 48);
+        expectNear(color, expected, 0.02, i);
+        // The diffuse part alone is albedo/π times Lambert's irradiance, less what Fresnel takes: between 85 % and 97 %
+        // of it at these angles, plus the specular part.
+        const double irradiance =
+            lambertPolygon(s.position, {0, 1, 0}, {{-x, 1, -z}, {x, 1, -z}, {x, 1, z}, {-x, 1, z}});
+        const double lambert = 0.8 / kPi * irradiance * 4;
+        EXPECT_GT(color.x, 0.8 * lambert);
+        EXPECT_LT(color.x, 1.2 * lambert);
+      });
+      EXPECT_GT(n, 150u);
+    }
   }
 }
 
+// A lamp that only seems to shine: each way of sampling must know its front.
 TEST(AllLights, LampsThatFaceAwayAndLightsBelowTheHorizonGiveNothing) {
   Builder b = floorOf({0.8f, 0.8f, 0.8f}, 0, 0.5f);
   addLamp(b, false, false);
+  addLamp(b, false, false, 0.02f);
   b.scene.lights.push_back({"", scene::LightKind::Point, kIntensity, {0, -0.5f, 0}});
   b.scene.lights.push_back({"", scene::LightKind::Directional, kIntensity, {}, {0, 1, 0}});
   const scene::Camera camera = lookAt({0.2f, 0.6f, 2.0f}, {0, 0, 0}, 40);
