@@ -57,7 +57,8 @@ void sayError(const char* text) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+// What throws while an error is being said may end the program.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
   CLI::App app("Weir: a declarative Vulkan render graph with ReSTIR passes.", "weir");
   app.set_version_flag("--version", "weir " WEIR_VERSION);
   app.set_help_all_flag("--help-all", "help on every command");

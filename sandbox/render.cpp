@@ -72,12 +72,14 @@ void addRenderCommand(CLI::App& app) {
   command->add_option("--size", words->size, "Width x height in pixels")->capture_default_str();
   command->add_option("--frames", o.frames, "Frames in sequence; outputs are the last one")->capture_default_str();
   command->add_option("--average", o.average, "Outputs are the mean of the last so many frames")->capture_default_str();
-  command->add_option("--restarts", o.restarts, "Repeat with independent seeds and cleared history; outputs are the mean")
+  command
+      ->add_option("--restarts", o.restarts, "Repeat with independent seeds and cleared history; outputs are the mean")
       ->capture_default_str();
   command->add_option("--first-frame", o.firstFrame, "Number of the first frame")->capture_default_str();
   command->add_option("--seed", o.seed, "Seed of the random numbers")->capture_default_str();
   command->add_option("--out", words->outputs, "output=file.exr or output=file.png")->allow_extra_args(false);
-  command->add_option("--stderr", words->errors, "output=file.exr: standard error over the restarts")->allow_extra_args(false);
+  command->add_option("--stderr", words->errors, "output=file.exr: standard error over the restarts")
+      ->allow_extra_args(false);
   command->add_option("--set", o.overrides.set, "pass.param=value")->allow_extra_args(false);
   command->add_option("--enable", o.overrides.enable, "Pass to enable")->allow_extra_args(false);
   command->add_option("--disable", o.overrides.disable, "Pass to disable")->allow_extra_args(false);

@@ -16,7 +16,7 @@ std::filesystem::path libraryFolder() {
 
 std::filesystem::path commonShaderFolder() {
   const char* given = std::getenv("WEIR_SHADERS");
-  const std::filesystem::path folder =
+  std::filesystem::path folder =
       (given != nullptr && *given != '\0' ? std::filesystem::path(given) : libraryFolder() / "shaders") / "common";
   if (!std::filesystem::is_directory(folder)) {
     throw InputError("no shaders at " + folder.string() + " (WEIR_SHADERS names the folder that holds 'common')");

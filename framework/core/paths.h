@@ -8,7 +8,8 @@ namespace weir {
 /// The folder of libweir.so itself.
 std::filesystem::path libraryFolder();
 
-/// The framework's own shaders: $WEIR_SHADERS/common when set, else shaders/common beside the library. InputError when absent.
+/// The framework's own shaders: $WEIR_SHADERS/common when set, else shaders/common beside the library. InputError when
+/// absent.
 std::filesystem::path commonShaderFolder();
 
 }  // namespace weir

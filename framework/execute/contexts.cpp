@@ -23,11 +23,12 @@ T Answers<Base>::get(const std::string& param) const {
   if (found == pass_.params.end()) {
     std::vector<std::string> known;
     for (const auto& [name, value] : pass_.params) known.push_back(name);
-    throw InputError(fmt::format("{} ({}) asks for parameter '{}', which it doesn't declare{}", pass_.name, pass_.type, param,
-                                 hint(param, known)));
+    throw InputError(fmt::format("{} ({}) asks for parameter '{}', which it doesn't declare{}", pass_.name, pass_.type,
+                                 param, hint(param, known)));
   }
   if (!std::holds_alternative<T>(found->second)) {
-    throw InputError(fmt::format("{} ({}) asks for parameter '{}' as another type than it declares", pass_.name, pass_.type, param));
+    throw InputError(
+        fmt::format("{} ({}) asks for parameter '{}' as another type than it declares", pass_.name, pass_.type, param));
   }
   return std::get<T>(found->second);
 }
@@ -56,7 +57,8 @@ void Preparing::scratch(const std::string& name, const PortType& type) {
   if (!type.perPixelFromParam.empty()) perPixel = static_cast<uint32_t>(integer(type.perPixelFromParam));
   if (!type.perPixelFromInput.empty()) {
     if (!connected(type.perPixelFromInput)) {
-      throw InputError(fmt::format("{}: scratch '{}' takes its count from the open input '{}'", pass.name, name, type.perPixelFromInput));
+      throw InputError(fmt::format("{}: scratch '{}' takes its count from the open input '{}'", pass.name, name,
+                                   type.perPixelFromInput));
     }
     for (const graph::Binding& b : pass.inputs) {
       if (b.port == type.perPixelFromInput) perPixel = runtime_.shared_.graph->resources[b.resource].perPixel;
@@ -81,7 +83,8 @@ void Preparing::texture(const std::string& name, TextureData data) {
   beforeKernels("texture '" + name + "'");
   const uint64_t texels = uint64_t{data.width} * data.height * std::max(1u, data.depth);
   if (data.rgba.size() != 4 * texels) {
-    throw InputError(fmt::format("{}: texture '{}' has {} numbers, not {}", runtime_.compiled_.name, name, data.rgba.size(), 4 * texels));
+    throw InputError(fmt::format("{}: texture '{}' has {} numbers, not {}", runtime_.compiled_.name, name,
+                                 data.rgba.size(), 4 * texels));
   }
   gpu::ImageDesc desc;
   desc.width = data.width;
@@ -110,8 +113,9 @@ Kernel Preparing::rayKernel(const std::string& file, const KernelOptions& option
     throw InputError(fmt::format("{} ({}) traces rays but doesn't declare scene.acceleration", pass.name, pass.type));
   }
   if (runtime_.shared_.backend == trace::Backend::None) {
-    throw InputError(fmt::format("{} ({}) traces rays, and {} can't: it has neither ray-tracing pipelines nor ray queries", pass.name,
-                                 pass.type, runtime_.shared_.device->info().name));
+    throw InputError(
+        fmt::format("{} ({}) traces rays, and {} can't: it has neither ray-tracing pipelines nor ray queries",
+                    pass.name, pass.type, runtime_.shared_.device->info().name));
   }
   const bool pipeline = runtime_.shared_.backend == trace::Backend::Pipeline;
   return runtime_.addKernel(pipeline ? KernelKind::RayPipeline : KernelKind::RayQuery, file, options);
@@ -146,7 +150,8 @@ Kernel Preparing::rasterKernel(const std::string& file, const std::string& targe
 
 const PassRuntime::PreparedKernel& Recording::kernelOf(Kernel kernel) const {
   if (kernel.index >= runtime_.kernels_.size()) {
-    throw InputError(fmt::format("{} ({}) launches a kernel that it never prepared", runtime_.compiled_.name, runtime_.compiled_.type));
+    throw InputError(fmt::format("{} ({}) launches a kernel that it never prepared", runtime_.compiled_.name,
+                                 runtime_.compiled_.type));
   }
   return runtime_.kernels_[kernel.index];
 }
@@ -168,21 +173,22 @@ void Recording::bind(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint
   // Launches of one pass see what the ones before them wrote.
   if (!first_) {
     const VkAccessFlags2 both = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT;
-    barrier(runtime_.stages_, VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT * (runtime_.depth_ ? 1 : 0),
+    barrier(runtime_.stages_,
+            VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT * (runtime_.depth_ ? 1 : 0),
             runtime_.stages_, both);
   }
   first_ = false;
   const VkPipelineBindPoint point = kernel.pipeline->bindPoint();
   vkCmdBindPipeline(cursor_.commands, point, kernel.pipeline->handle());
   const std::array sets = {cursor_.sceneSet, kernel.sets[cursor_.parity]};
-  vkCmdBindDescriptorSets(cursor_.commands, point, runtime_.pipelineLayout_, 0, static_cast<uint32_t>(sets.size()), sets.data(), 1,
-                          &cursor_.frameOffset);
+  vkCmdBindDescriptorSets(cursor_.commands, point, runtime_.pipelineLayout_, 0, static_cast<uint32_t>(sets.size()),
+                          sets.data(), 1, &cursor_.frameOffset);
   std::vector<uint32_t>& push = runtime_.push_;
   push[0] = w;
   push[1] = h;
   push[2] = index;
-  vkCmdPushConstants(cursor_.commands, runtime_.pipelineLayout_, VK_SHADER_STAGE_ALL, 0, static_cast<uint32_t>(push.size() * 4),
-                     push.data());
+  vkCmdPushConstants(cursor_.commands, runtime_.pipelineLayout_, VK_SHADER_STAGE_ALL, 0,
+                     static_cast<uint32_t>(push.size() * 4), push.data());
 }
 
 void Recording::launch(Kernel kernel, uint32_t launchWidth, uint32_t launchHeight, uint32_t index) {
@@ -227,7 +233,8 @@ void Recording::draw(Kernel kernel) {
   const auto& draws = runtime_.shared_.scene->draws;
   for (uint32_t i = 0; i < draws.size(); ++i) {
     vkCmdSetCullMode(cursor_.commands, draws[i].doubleSided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
-    vkCmdSetFrontFace(cursor_.commands, draws[i].flipsWinding ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+    vkCmdSetFrontFace(cursor_.commands,
+                      draws[i].flipsWinding ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
     if (draws[i].triangles > 0) vkCmdDraw(cursor_.commands, draws[i].triangles * 3, 1, 0, i);
   }
   vkCmdEndRendering(cursor_.commands);

@@ -46,7 +46,9 @@ class Preparing final : public Answers<PrepareContext> {
 class Recording final : public Answers<RecordContext> {
  public:
   Recording(PassRuntime& runtime, const FrameCursor& cursor)
-      : Answers(runtime.compiled_, *runtime.shared_.graph, runtime.shared_.sceneFolder), runtime_(runtime), cursor_(cursor) {}
+      : Answers(runtime.compiled_, *runtime.shared_.graph, runtime.shared_.sceneFolder),
+        runtime_(runtime),
+        cursor_(cursor) {}
   void launch(Kernel kernel, uint32_t index) override { launch(kernel, width(), height(), index); }
   void launch(Kernel kernel, uint32_t launchWidth, uint32_t launchHeight, uint32_t index) override;
   void draw(Kernel kernel) override;
@@ -54,7 +56,8 @@ class Recording final : public Answers<RecordContext> {
  private:
   const PassRuntime::PreparedKernel& kernelOf(Kernel kernel) const;
   void bind(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint32_t h, uint32_t index);
-  void barrier(VkPipelineStageFlags2 before, VkAccessFlags2 beforeAccess, VkPipelineStageFlags2 after, VkAccessFlags2 afterAccess);
+  void barrier(VkPipelineStageFlags2 before, VkAccessFlags2 beforeAccess, VkPipelineStageFlags2 after,
+               VkAccessFlags2 afterAccess);
   PassRuntime& runtime_;
   const FrameCursor& cursor_;
   bool first_ = true;

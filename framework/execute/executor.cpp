@@ -13,13 +13,15 @@ namespace weir::execute {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double milliseconds(Clock::time_point from) { return std::chrono::duration<double, std::milli>(Clock::now() - from).count(); }
+double milliseconds(Clock::time_point from) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - from).count();
+}
 
 constexpr uint64_t kConstantsStride = 256;  // the largest minUniformBufferOffsetAlignment that Vulkan allows
 static_assert(sizeof(FrameConstants) <= kConstantsStride);
 
-void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags2 before, VkAccessFlags2 beforeAccess, VkPipelineStageFlags2 after,
-                   VkAccessFlags2 afterAccess) {
+void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags2 before, VkAccessFlags2 beforeAccess,
+                   VkPipelineStageFlags2 after, VkAccessFlags2 afterAccess) {
   VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
   memory.srcStageMask = before;
   memory.srcAccessMask = beforeAccess;
@@ -38,11 +40,12 @@ GpuCamera toGpu(const scene::Camera& camera, uint32_t width, uint32_t height) {
   const float aspect = static_cast<float>(width) / static_cast<float>(height);
   const glm::vec3 right = glm::normalize(glm::cross(camera.forward, camera.up));
   const glm::vec3 up = glm::cross(right, camera.forward);
-  return {glm::vec4(camera.eye, 0), glm::vec4(camera.forward, 0), glm::vec4(right * t * aspect, 0), glm::vec4(up * t, 0)};
+  return {glm::vec4(camera.eye, 0), glm::vec4(camera.forward, 0), glm::vec4(right * t * aspect, 0),
+          glm::vec4(up * t, 0)};
 }
 
-Executor::Executor(const gpu::Device& device, shader::Compiler& compiler, Registry& registry, const scene::SceneGpu& scene,
-                   graph::CompiledGraph graph, const ExecutorOptions& options)
+Executor::Executor(const gpu::Device& device, shader::Compiler& compiler, Registry& registry,
+                   const scene::SceneGpu& scene, graph::CompiledGraph graph, const ExecutorOptions& options)
     : device_(device), graph_(std::move(graph)), scene_(scene), resources_(device, graph_) {
   shared_.device = &device_;
   shared_.compiler = &compiler;
@@ -53,12 +56,14 @@ Executor::Executor(const gpu::Device& device, shader::Compiler& compiler, Regist
   shared_.backend = scene.hasAcceleration() ? options.backend : trace::Backend::None;
   shared_.countRays = options.countRays;
   shared_.sceneFolder = options.sceneFolder;
-  constants_ = gpu::Buffer(device, kSlots * kConstantsStride, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Residency::Upload,
-                           "frame constants");
-  rayCounter_ = gpu::Buffer(device, sizeof(uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Residency::Readback, "ray counter");
+  constants_ = gpu::Buffer(device, kSlots * kConstantsStride, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+                           gpu::Residency::Upload, "frame constants");
+  rayCounter_ = gpu::Buffer(device, sizeof(uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Residency::Readback,
+                            "ray counter");
   try {
     sceneSet_ = scene.makeSet(constants_, sizeof(FrameConstants), rayCounter_);
-    for (const graph::CompiledPass& pass : graph_.passes) passes_.push_back(std::make_unique<PassRuntime>(shared_, pass));
+    for (const graph::CompiledPass& pass : graph_.passes)
+      passes_.push_back(std::make_unique<PassRuntime>(shared_, pass));
     makeSlots();
   } catch (...) {
     scene_.freeSet(sceneSet_);
@@ -105,16 +110,19 @@ void Executor::stamp(const Slot& slot, uint32_t query) const {
 
 void Executor::collect(Slot& slot) {
   if (!slot.busy) return;
-  gpu::check(vkWaitForFences(device_.handle(), 1, &slot.fence, VK_TRUE, std::numeric_limits<uint64_t>::max()), "vkWaitForFences");
+  gpu::check(vkWaitForFences(device_.handle(), 1, &slot.fence, VK_TRUE, std::numeric_limits<uint64_t>::max()),
+             "vkWaitForFences");
   gpu::check(vkResetFences(device_.handle(), 1, &slot.fence), "vkResetFences");
   slot.busy = false;
   if (slot.queries != VK_NULL_HANDLE) {
     std::vector<uint64_t> ticks(passes_.size() + 1);
-    gpu::check(vkGetQueryPoolResults(device_.handle(), slot.queries, 0, static_cast<uint32_t>(ticks.size()), ticks.size() * 8,
-                                     ticks.data(), 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-               "vkGetQueryPoolResults");
+    gpu::check(
+        vkGetQueryPoolResults(device_.handle(), slot.queries, 0, static_cast<uint32_t>(ticks.size()), ticks.size() * 8,
+                              ticks.data(), 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+        "vkGetQueryPoolResults");
     const double period = device_.capabilities().timestampPeriod * 1e-6;
-    for (size_t i = 0; i + 1 < ticks.size(); ++i) slot.times.gpu.push_back(static_cast<double>(ticks[i + 1] - ticks[i]) * period);
+    for (size_t i = 0; i + 1 < ticks.size(); ++i)
+      slot.times.gpu.push_back(static_cast<double>(ticks[i + 1] - ticks[i]) * period);
     slot.times.gpuFrame = static_cast<double>(ticks.back() - ticks.front()) * period;
   }
   times_.push_back(std::move(slot.times));

@@ -24,7 +24,7 @@ struct FrameInput {
   scene::Camera camera;
   uint32_t index = 0;  ///< frame number: a key of the random numbers
   uint32_t seed = 0;
-  bool cut = false;    ///< the camera jumped: history is cleared, nothing moved
+  bool cut = false;  ///< the camera jumped: history is cleared, nothing moved
 };
 
 /// Milliseconds of one frame.

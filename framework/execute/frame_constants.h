@@ -8,7 +8,8 @@
 
 namespace weir::execute {
 
-/// A pinhole camera as shaders read it: right and up are scaled so that direction = forward + ndc.x · right - ndc.y · up.
+/// A pinhole camera as shaders read it: right and up are scaled so that direction = forward + ndc.x · right - ndc.y ·
+/// up.
 struct GpuCamera {
   glm::vec4 origin{0.0f}, forward{0.0f}, right{0.0f}, up{0.0f};
 };

@@ -21,7 +21,8 @@ PassRuntime::PassRuntime(Shared& shared, const graph::CompiledPass& pass)
   const PassDescription& d = *pass.description;
   push_.assign(pushBytes(d) / 4, 0);
   push_[3] = pass.stream;
-  for (const PushParam& p : pushParams(d)) push_[p.offset / 4] = paramBits(*p.description, pass.params.at(p.description->name));
+  for (const PushParam& p : pushParams(d))
+    push_[p.offset / 4] = paramBits(*p.description, pass.params.at(p.description->name));
   for (const ParamDescription* p : specialParams(d)) constants_.push_back(paramBits(*p, pass.params.at(p->name)));
   Preparing context(*this);
   pass_->prepare(context);
@@ -75,10 +76,12 @@ void PassRuntime::makeLayouts() {
   layout.pSetLayouts = sets.data();
   layout.pushConstantRangeCount = 1;
   layout.pPushConstantRanges = &range;
-  gpu::check(vkCreatePipelineLayout(shared_.device->handle(), &layout, nullptr, &pipelineLayout_), "vkCreatePipelineLayout");
+  gpu::check(vkCreatePipelineLayout(shared_.device->handle(), &layout, nullptr, &pipelineLayout_),
+             "vkCreatePipelineLayout");
 }
 
-shader::CompileRequest PassRuntime::request(shader::Stage stage, const std::string& source, const KernelOptions& options) const {
+shader::CompileRequest PassRuntime::request(shader::Stage stage, const std::string& source,
+                                            const KernelOptions& options) const {
   shader::CompileRequest r;
   r.name = "prelude of " + compiled_.name;
   r.source = source;
@@ -101,11 +104,10 @@ const HitShaders& PassRuntime::hitShaders() {
     r.includeFolders.push_back(commonShaderFolder().string());
     return shared_.compiler->compile(r).spirv;
   };
-  shared_.hitShaders = HitShaders{compile("closest_hit.glsl", shader::Stage::ClosestHit),
-                                  compile("closest_any_hit.glsl", shader::Stage::AnyHit),
-                                  compile("closest_miss.glsl", shader::Stage::Miss),
-                                  compile("shadow_any_hit.glsl", shader::Stage::AnyHit),
-                                  compile("shadow_miss.glsl", shader::Stage::Miss)};
+  shared_.hitShaders = HitShaders{
+      compile("closest_hit.glsl", shader::Stage::ClosestHit), compile("closest_any_hit.glsl", shader::Stage::AnyHit),
+      compile("closest_miss.glsl", shader::Stage::Miss), compile("shadow_any_hit.glsl", shader::Stage::AnyHit),
+      compile("shadow_miss.glsl", shader::Stage::Miss)};
   return *shared_.hitShaders;
 }
 
@@ -129,8 +131,8 @@ Kernel PassRuntime::addKernel(KernelKind kind, const std::string& file, const Ke
       const auto fragment = spirv(KernelKind::Fragment, shader::Stage::Fragment);
       made = Pipeline::raster(*shared_.device, pipelineLayout_, vertex, fragment, VK_FORMAT_R32_UINT, constants_, name);
     } else if (kind == KernelKind::RayPipeline) {
-      made = Pipeline::rays(*shared_.device, pipelineLayout_, spirv(kind, shader::Stage::RayGeneration), hitShaders(), constants_,
-                            name);
+      made = Pipeline::rays(*shared_.device, pipelineLayout_, spirv(kind, shader::Stage::RayGeneration), hitShaders(),
+                            constants_, name);
     } else {
       made = Pipeline::compute(*shared_.device, pipelineLayout_, spirv(kind, shader::Stage::Compute), constants_, name);
     }
@@ -170,15 +172,17 @@ std::array<VkDescriptorSet, 2> PassRuntime::makeSets(const KernelOptions& option
   std::vector<Slot> slots;
   uint32_t binding = 0;
   for (size_t i = 0; i < d.inputs.size(); ++i, ++binding) {
-    if (compiled_.inputs[i].resource != graph::kNone) slots.push_back({"in_" + d.inputs[i].name, binding, descriptorType(d.inputs[i].type)});
+    if (compiled_.inputs[i].resource != graph::kNone)
+      slots.push_back({"in_" + d.inputs[i].name, binding, descriptorType(d.inputs[i].type)});
   }
   for (const PortDescription& p : d.outputs) slots.push_back({"out_" + p.name, binding++, descriptorType(p.type)});
   for (const Scratch& s : interface_.scratch) slots.push_back({"scratch_" + s.name, binding++, descriptorType(s.type)});
   const uint32_t firstTexture = binding;
 
-  const std::array<VkDescriptorPoolSize, 3> sizes = {{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * static_cast<uint32_t>(slots.size()) + 1},
-                                                      {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 2 * static_cast<uint32_t>(slots.size()) + 1},
-                                                      {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * static_cast<uint32_t>(textures_.size()) + 1}}};
+  const std::array<VkDescriptorPoolSize, 3> sizes = {
+      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * static_cast<uint32_t>(slots.size()) + 1},
+       {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 2 * static_cast<uint32_t>(slots.size()) + 1},
+       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 2 * static_cast<uint32_t>(textures_.size()) + 1}}};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   poolInfo.maxSets = 2;
   poolInfo.poolSizeCount = static_cast<uint32_t>(sizes.size());

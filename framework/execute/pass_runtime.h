@@ -83,7 +83,8 @@ class PassRuntime {
   VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
   VkPipelineLayout pipelineLayout_ = VK_NULL_HANDLE;
   std::vector<VkDescriptorPool> pools_;
-  std::vector<std::pair<std::string, std::unique_ptr<Pipeline>>> pipelines_;  ///< by kind and source: kernels that differ in bindings share one
+  std::vector<std::pair<std::string, std::unique_ptr<Pipeline>>>
+      pipelines_;  ///< by kind and source: kernels that differ in bindings share one
   std::vector<PreparedKernel> kernels_;
   std::vector<uint32_t> push_;  ///< the launch's four words, then parameters
   Specialization constants_;

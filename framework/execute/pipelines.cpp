@@ -44,7 +44,9 @@ struct SpecializationInfo {
   VkSpecializationInfo info{};
 };
 
-uint64_t alignUp(uint64_t value, uint64_t alignment) { return (value + alignment - 1) / alignment * alignment; }
+uint64_t alignUp(uint64_t value, uint64_t alignment) {
+  return (value + alignment - 1) / alignment * alignment;
+}
 
 VkRayTracingShaderGroupCreateInfoKHR group(VkRayTracingShaderGroupTypeKHR type) {
   VkRayTracingShaderGroupCreateInfoKHR g{VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR};
@@ -83,9 +85,12 @@ Pipeline& Pipeline::operator=(Pipeline&& other) noexcept {
 
 VkPipelineStageFlags2 Pipeline::stages() const {
   switch (bindPoint_) {
-    case VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR: return VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR;
-    case VK_PIPELINE_BIND_POINT_GRAPHICS: return VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
-    default: return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    case VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR:
+      return VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR;
+    case VK_PIPELINE_BIND_POINT_GRAPHICS:
+      return VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
+    default:
+      return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   }
 }
 
@@ -106,8 +111,9 @@ Pipeline Pipeline::compute(const gpu::Device& device, VkPipelineLayout layout, s
 
 Pipeline Pipeline::rays(const gpu::Device& device, VkPipelineLayout layout, std::span<const uint32_t> rayGeneration,
                         const HitShaders& hits, const Specialization& constants, const std::string& name) {
-  const Shader generation(device, rayGeneration), closest(device, hits.closestHit), closestAny(device, hits.closestAnyHit),
-      closestMiss(device, hits.closestMiss), shadowAny(device, hits.shadowAnyHit), shadowMiss(device, hits.shadowMiss);
+  const Shader generation(device, rayGeneration), closest(device, hits.closestHit),
+      closestAny(device, hits.closestAnyHit), closestMiss(device, hits.closestMiss),
+      shadowAny(device, hits.shadowAnyHit), shadowMiss(device, hits.shadowMiss);
   const SpecializationInfo special(constants);
   const std::array stages = {generation.stage(VK_SHADER_STAGE_RAYGEN_BIT_KHR, &special.info),
                              closestMiss.stage(VK_SHADER_STAGE_MISS_BIT_KHR, nullptr),

@@ -32,12 +32,18 @@ layout(set = 0, binding = 0, std140) uniform FrameBlock {
 
 const char* glslFormat(Format format) {
   switch (format) {
-    case Format::R32F: return "r32f";
-    case Format::RG32F: return "rg32f";
-    case Format::RGBA32F: return "rgba32f";
-    case Format::RGBA16F: return "rgba16f";
-    case Format::RGBA8: return "rgba8";
-    case Format::R32U: return "r32ui";
+    case Format::R32F:
+      return "r32f";
+    case Format::RG32F:
+      return "rg32f";
+    case Format::RGBA32F:
+      return "rgba32f";
+    case Format::RGBA16F:
+      return "rgba16f";
+    case Format::RGBA8:
+      return "rgba8";
+    case Format::R32U:
+      return "r32ui";
   }
   return "rgba32f";
 }
@@ -50,8 +56,8 @@ std::string extensions(bool pipeline, bool query) {
 }
 
 std::string buffer(uint32_t binding, const char* access, const char* type, const char* name) {
-  return fmt::format("layout(set = 0, binding = {0}, std430) {1} buffer Block_{3} {{ {2} {3}[]; }};\n", binding, access, type,
-                     name);
+  return fmt::format("layout(set = 0, binding = {0}, std430) {1} buffer Block_{3} {{ {2} {3}[]; }};\n", binding, access,
+                     type, name);
 }
 
 struct SceneParts {
@@ -82,8 +88,8 @@ std::string sceneDeclarations(const SceneParts& parts, uint32_t textures) {
   if (parts.materials) {
     s += "#define NEED_SCENE_MATERIALS 1\n";
     s += buffer(scene::kBindMaterials, "readonly", "Material", "sceneMaterials");
-    s += fmt::format("layout(set = 0, binding = {}) uniform sampler2D sceneTextures[{}];\n", uint32_t{scene::kBindTextures},
-                     textures);
+    s += fmt::format("layout(set = 0, binding = {}) uniform sampler2D sceneTextures[{}];\n",
+                     uint32_t{scene::kBindTextures}, textures);
   }
   if (parts.lights) {
     s += "#define NEED_SCENE_LIGHTS 1\n#define sceneLightCount frameBlock.lights\n";
@@ -93,13 +99,13 @@ std::string sceneDeclarations(const SceneParts& parts, uint32_t textures) {
   return s;
 }
 
-std::string port(const std::string& prefix, const std::string& name, const PortType& type, uint32_t perPixel, uint32_t binding,
-                 const char* access) {
+std::string port(const std::string& prefix, const std::string& name, const PortType& type, uint32_t perPixel,
+                 uint32_t binding, const char* access) {
   const std::string full = prefix + "_" + name;
   std::string s = fmt::format("#define has_{} 1\nconst uint {}_count = {}u;\n", full, full, perPixel);
   if (type.kind == PortKind::Buffer) {
-    s += fmt::format("layout(set = 1, binding = {0}, std430) {1} buffer Block_{2} {{ {3} {2}[]; }};\n", binding, access, full,
-                     type.layout.name);
+    s += fmt::format("layout(set = 1, binding = {0}, std430) {1} buffer Block_{2} {{ {3} {2}[]; }};\n", binding, access,
+                     full, type.layout.name);
   } else {
     const char* dimension = type.format == Format::R32U ? "uimage2D" : "image2D";
     s += fmt::format("layout(set = 1, binding = {}, {}) {} uniform {} {};\n", binding, glslFormat(type.format), access,
@@ -135,7 +141,8 @@ std::string ports(const KernelInterface& k) {
     s += port("scratch", scratch.name, scratch.type, scratch.perPixel, binding++, "");
   }
   for (const auto& [name, volume] : k.textures) {
-    s += fmt::format("layout(set = 1, binding = {}) uniform {} texture_{};\n", binding++, volume ? "sampler3D" : "sampler2D", name);
+    s += fmt::format("layout(set = 1, binding = {}) uniform {} texture_{};\n", binding++,
+                     volume ? "sampler3D" : "sampler2D", name);
   }
   return structs + s;
 }
@@ -147,7 +154,8 @@ std::string params(const PassDescription& d) {
     const ParamType type = p.description->type;
     const char* glsl = type == ParamType::Float ? "float" : type == ParamType::Bool ? "uint" : "int";
     block += fmt::format("  {} p_{};\n", glsl, p.description->name);
-    names += fmt::format("#define param_{0} (launchBlock.p_{0}{1})\n", p.description->name, type == ParamType::Bool ? " != 0u" : "");
+    names += fmt::format("#define param_{0} (launchBlock.p_{0}{1})\n", p.description->name,
+                         type == ParamType::Bool ? " != 0u" : "");
   }
   block += "} launchBlock;\n#define launchIndex launchBlock.index\n#define launchStream launchBlock.stream\n";
   uint32_t id = 0;
@@ -202,8 +210,9 @@ std::vector<PushParam> pushParams(const PassDescription& description) {
 uint32_t pushBytes(const PassDescription& description) {
   const auto bytes = static_cast<uint32_t>(kLaunchBytes + 4 * pushParams(description).size());
   if (bytes > kPushLimit) {
-    throw InputError(fmt::format("{}: {} bytes of parameters, more than the {} that every device takes; let some specialise",
-                                 description.type, bytes, kPushLimit));
+    throw InputError(
+        fmt::format("{}: {} bytes of parameters, more than the {} that every device takes; let some specialise",
+                    description.type, bytes, kPushLimit));
   }
   return bytes;
 }
@@ -218,14 +227,18 @@ std::vector<const ParamDescription*> specialParams(const PassDescription& descri
 
 uint32_t paramBits(const ParamDescription& description, const ParamValue& value) {
   switch (description.type) {
-    case ParamType::Bool: return std::get<bool>(value) ? 1 : 0;
-    case ParamType::Int: return static_cast<uint32_t>(std::get<int32_t>(value));
-    case ParamType::Float: return std::bit_cast<uint32_t>(std::get<float>(value));
+    case ParamType::Bool:
+      return std::get<bool>(value) ? 1 : 0;
+    case ParamType::Int:
+      return static_cast<uint32_t>(std::get<int32_t>(value));
+    case ParamType::Float:
+      return std::bit_cast<uint32_t>(std::get<float>(value));
     case ParamType::Enum: {
       const auto found = std::ranges::find(description.choices, std::get<std::string>(value));
       return static_cast<uint32_t>(found - description.choices.begin());
     }
-    default: return 0;
+    default:
+      return 0;
   }
 }
 
@@ -239,10 +252,12 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
   if (traces) {
     s += fmt::format("layout(set = 0, binding = {}) uniform accelerationStructureEXT sceneAcceleration;\n",
                      uint32_t{scene::kBindAcceleration});
-    s += fmt::format("#define CAN_TRACE 1\n#define {} 1\n", kind == KernelKind::RayPipeline ? "TRACE_PIPELINE" : "TRACE_QUERY");
+    s += fmt::format("#define CAN_TRACE 1\n#define {} 1\n",
+                     kind == KernelKind::RayPipeline ? "TRACE_PIPELINE" : "TRACE_QUERY");
     if (k.countRays) {
-      s += fmt::format("#define COUNT_RAYS 1\nlayout(set = 0, binding = {}, std430) buffer RayBlock {{ uint count; }} rayCounter;\n",
-                       uint32_t{scene::kBindRays});
+      s += fmt::format(
+          "#define COUNT_RAYS 1\nlayout(set = 0, binding = {}, std430) buffer RayBlock {{ uint count; }} rayCounter;\n",
+          uint32_t{scene::kBindRays});
     }
   }
   s += ports(k);
@@ -263,9 +278,15 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
   s += fmt::format("#include \"{}\"\n", file);
 
   switch (kind) {
-    case KernelKind::RayPipeline: s += "void main() {\n  begin();\n  run(gl_LaunchIDEXT.xy);\n}\n"; break;
-    case KernelKind::Vertex: s += vertexMain(); break;
-    case KernelKind::Fragment: s += fragmentMain(); break;
+    case KernelKind::RayPipeline:
+      s += "void main() {\n  begin();\n  run(gl_LaunchIDEXT.xy);\n}\n";
+      break;
+    case KernelKind::Vertex:
+      s += vertexMain();
+      break;
+    case KernelKind::Fragment:
+      s += fragmentMain();
+      break;
     default:
       s += fmt::format("layout(local_size_x = {0}, local_size_y = {0}) in;\n", kGroupSide);
       s += "void main() {\n  begin();\n";

@@ -1,5 +1,5 @@
-// The GLSL that stands before a pass's shader: ports, parameters, and just those parts of scene and frame that the pass declared.
-// Plain text from plain data, so that it can be read and tested without a GPU.
+// The GLSL that stands before a pass's shader: ports, parameters, and just those parts of scene and frame that the pass
+// declared. Plain text from plain data, so that it can be read and tested without a GPU.
 #pragma once
 
 #include <weir/graph/compile.h>
@@ -17,7 +17,8 @@ struct Scratch {
   uint32_t perPixel = 1;
 };
 
-/// Everything that a kernel of a pass can see; binding numbers in set 1 count through inputs, outputs, scratch, textures.
+/// Everything that a kernel of a pass can see; binding numbers in set 1 count through inputs, outputs, scratch,
+/// textures.
 struct KernelInterface {
   const graph::CompiledGraph* graph = nullptr;
   const graph::CompiledPass* pass = nullptr;
@@ -35,7 +36,8 @@ std::string kernelSource(const KernelInterface& interface, KernelKind kind, cons
 /// Full source of one of the tracing interface's own hit and miss shaders: the scene, no ports.
 std::string hitShaderSource(const std::string& file, uint32_t sceneTextures);
 
-/// Parameters in push-constant order after the launch's four words; bools and enums take 4 bytes like numbers, texts none.
+/// Parameters in push-constant order after the launch's four words; bools and enums take 4 bytes like numbers, texts
+/// none.
 struct PushParam {
   const ParamDescription* description;
   uint32_t offset;
@@ -47,8 +49,8 @@ std::vector<const ParamDescription*> specialParams(const PassDescription& descri
 /// A parameter's 32 bits as the shader reads them (an Enum's index, a bool's 0 or 1).
 uint32_t paramBits(const ParamDescription& description, const ParamValue& value);
 
-inline constexpr uint32_t kLaunchBytes = 16;   ///< size, index, stream
-inline constexpr uint32_t kPushLimit = 128;    ///< what every Vulkan device has
-inline constexpr uint32_t kGroupSide = 8;      ///< compute workgroups are 8 × 8
+inline constexpr uint32_t kLaunchBytes = 16;  ///< size, index, stream
+inline constexpr uint32_t kPushLimit = 128;   ///< what every Vulkan device has
+inline constexpr uint32_t kGroupSide = 8;     ///< compute workgroups are 8 × 8
 
 }  // namespace weir::execute

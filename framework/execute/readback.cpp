@@ -26,8 +26,12 @@ void unpackPixel(const std::byte* from, Format format, float* to) {
       std::memcpy(to, from, 4);
       to[1] = to[2] = to[0];
       break;
-    case Format::RG32F: std::memcpy(to, from, 8); break;
-    case Format::RGBA32F: std::memcpy(to, from, 16); break;
+    case Format::RG32F:
+      std::memcpy(to, from, 8);
+      break;
+    case Format::RGBA32F:
+      std::memcpy(to, from, 16);
+      break;
     case Format::RGBA16F:
       for (int c = 0; c < 4; ++c) {
         uint16_t half = 0;
@@ -90,7 +94,8 @@ void Executor::writeResource(const std::string& name, std::span<const std::byte>
   // Both copies: the frame to come reads this one as its own or as the one before it.
   for (uint32_t parity = 0; parity < 2; ++parity) {
     const Storage& storage = resources_.at(resourceNamed(name), parity, false);
-    const gpu::Buffer staging(device_, bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Residency::Upload, "upload");
+    const gpu::Buffer staging(device_, bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Residency::Upload,
+                              "upload");
     std::memcpy(staging.mapped(), bytes.data(), bytes.size());
     staging.flush();
     device_.submitAndWait([&](VkCommandBuffer commands) {
@@ -130,7 +135,8 @@ image::Picture Executor::read(const std::string& output) {
   }
   const graph::Resource& resource = graph_.resources[found->resource];
   if (resource.type.kind != PortKind::Image) {
-    throw InputError(fmt::format("output '{}' ({}) is a buffer of {}, not a picture", output, resource.name, resource.type.layout.name));
+    throw InputError(fmt::format("output '{}' ({}) is a buffer of {}, not a picture", output, resource.name,
+                                 resource.type.layout.name));
   }
   finish();
   const uint32_t parity = static_cast<uint32_t>((frames_ + 1) & 1u);

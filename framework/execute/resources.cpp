@@ -4,12 +4,18 @@ namespace weir::execute {
 
 VkFormat vulkanFormat(Format format) {
   switch (format) {
-    case Format::R32F: return VK_FORMAT_R32_SFLOAT;
-    case Format::RG32F: return VK_FORMAT_R32G32_SFLOAT;
-    case Format::RGBA32F: return VK_FORMAT_R32G32B32A32_SFLOAT;
-    case Format::RGBA16F: return VK_FORMAT_R16G16B16A16_SFLOAT;
-    case Format::RGBA8: return VK_FORMAT_R8G8B8A8_UNORM;
-    case Format::R32U: return VK_FORMAT_R32_UINT;
+    case Format::R32F:
+      return VK_FORMAT_R32_SFLOAT;
+    case Format::RG32F:
+      return VK_FORMAT_R32G32_SFLOAT;
+    case Format::RGBA32F:
+      return VK_FORMAT_R32G32B32A32_SFLOAT;
+    case Format::RGBA16F:
+      return VK_FORMAT_R16G16B16A16_SFLOAT;
+    case Format::RGBA8:
+      return VK_FORMAT_R8G8B8A8_UNORM;
+    case Format::R32U:
+      return VK_FORMAT_R32_UINT;
   }
   return VK_FORMAT_UNDEFINED;
 }

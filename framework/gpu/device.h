@@ -12,8 +12,9 @@
 namespace weir::gpu {
 
 struct DeviceOptions {
-  std::string choice;       ///< "": the best there is; "cpu"; an index of `listDevices`; or part of a name, ignoring case
-  bool validation = false;  ///< Khronos validation with synchronization checks; InputError where the layer isn't installed
+  std::string choice;  ///< "": the best there is; "cpu"; an index of `listDevices`; or part of a name, ignoring case
+  bool validation =
+      false;  ///< Khronos validation with synchronization checks; InputError where the layer isn't installed
   bool hideRayTracing = false;  ///< as if the device had none (tests of the raster path)
   bool hideRayQuery = false, hideRayPipeline = false;
   std::string cacheFolder;  ///< for the pipeline cache; empty: as `shader::Compiler`; "-": none
@@ -22,19 +23,19 @@ struct DeviceOptions {
 /// What a device offers beyond Weir's minimum.
 struct Capabilities {
   bool accelerationStructure = false, rayPipeline = false, rayQuery = false;
-  bool graphics = true;            ///< the queue can rasterise
+  bool graphics = true;  ///< the queue can rasterise
   uint32_t subgroupSize = 0;
-  float timestampPeriod = 0.0f;    ///< nanoseconds a tick; 0: no timestamps
+  float timestampPeriod = 0.0f;  ///< nanoseconds a tick; 0: no timestamps
   uint32_t shaderGroupHandleSize = 0, shaderGroupHandleAlignment = 0, shaderGroupBaseAlignment = 0;
   uint32_t minScratchAlignment = 0;
   uint64_t maxStorageBufferRange = 0;
-  uint32_t maxTextures = 0;        ///< sampled images in one bindless array
+  uint32_t maxTextures = 0;  ///< sampled images in one bindless array
 };
 
 struct DeviceInfo {
   uint32_t index = 0;
-  std::string name, driver;   ///< driver: name and version in words
-  std::string kind;           ///< "discrete", "integrated", "virtual", "cpu", "other"
+  std::string name, driver;  ///< driver: name and version in words
+  std::string kind;          ///< "discrete", "integrated", "virtual", "cpu", "other"
   uint32_t apiVersion = 0;
   std::vector<std::string> missing;  ///< of Weir's minimum; empty: usable
   Capabilities capabilities;
@@ -51,7 +52,8 @@ struct ValidationMessage {
 
 class Device {
  public:
-  /// Throws InputError when no device fits `choice` (naming those there are), or the chosen one lacks something (naming what).
+  /// Throws InputError when no device fits `choice` (naming those there are), or the chosen one lacks something (naming
+  /// what).
   explicit Device(const DeviceOptions& options);
   ~Device();
   Device(const Device&) = delete;

@@ -30,9 +30,9 @@ class Buffer {
   VkBuffer handle() const { return buffer_; }
   uint64_t size() const { return size_; }
   VkDeviceAddress address() const { return address_; }  ///< 0 unless VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT
-  std::byte* mapped() const { return mapped_; }          ///< nullptr when Device
-  void flush() const;       ///< after host writes
-  void invalidate() const;  ///< before host reads
+  std::byte* mapped() const { return mapped_; }         ///< nullptr when Device
+  void flush() const;                                   ///< after host writes
+  void invalidate() const;                              ///< before host reads
   explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
 
  private:
@@ -78,13 +78,16 @@ class Image {
 };
 
 /// Device-local buffer filled with `bytes` through a staging copy; waits. `usage` gets TRANSFER_DST added.
-Buffer uploadBuffer(const Device& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage, const std::string& name);
+Buffer uploadBuffer(const Device& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage,
+                    const std::string& name);
 template <typename T>
-Buffer uploadBuffer(const Device& device, const std::vector<T>& values, VkBufferUsageFlags usage, const std::string& name) {
+Buffer uploadBuffer(const Device& device, const std::vector<T>& values, VkBufferUsageFlags usage,
+                    const std::string& name) {
   return uploadBuffer(device, std::as_bytes(std::span(values)), usage, name);
 }
 
-/// Image filled with tightly packed texels (level 0) and left in SHADER_READ_ONLY_OPTIMAL; waits. Adds TRANSFER_DST and SAMPLED.
+/// Image filled with tightly packed texels (level 0) and left in SHADER_READ_ONLY_OPTIMAL; waits. Adds TRANSFER_DST and
+/// SAMPLED.
 Image uploadImage(const Device& device, ImageDesc desc, std::span<const std::byte> texels, const std::string& name);
 
 /// Copies a buffer's bytes back (needs TRANSFER_SRC); waits.

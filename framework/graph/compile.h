@@ -1,5 +1,5 @@
-// Description + pass descriptions → an ordered plan as plain data: passes, resources, bindings, barriers, history. No Vulkan here;
-// execute/ carries the plan out, tests and `weir graph explain` read it.
+// Description + pass descriptions → an ordered plan as plain data: passes, resources, bindings, barriers, history. No
+// Vulkan here; execute/ carries the plan out, tests and `weir graph explain` read it.
 #pragma once
 
 #include <weir/graph/description.h>
@@ -22,13 +22,13 @@ enum class Access : uint8_t { None, Read, Write };
 struct Resource {
   std::string name;  ///< "temporal.reservoirs"
   PortType type;
-  uint32_t width = 0, height = 0;  ///< images, and per-pixel buffers: the extent they cover
-  uint32_t perPixel = 1;           ///< elements a pixel
-  uint64_t elements = 0;           ///< buffers
-  uint64_t bytes = 0;              ///< of one copy
-  bool history = false;            ///< read by somebody as @previous
-  bool graphOutput = false;        ///< named under "outputs": alive to the frame's end
-  uint32_t producer = kNone;       ///< index into CompiledGraph::passes
+  uint32_t width = 0, height = 0;              ///< images, and per-pixel buffers: the extent they cover
+  uint32_t perPixel = 1;                       ///< elements a pixel
+  uint64_t elements = 0;                       ///< buffers
+  uint64_t bytes = 0;                          ///< of one copy
+  bool history = false;                        ///< read by somebody as @previous
+  bool graphOutput = false;                    ///< named under "outputs": alive to the frame's end
+  uint32_t producer = kNone;                   ///< index into CompiledGraph::passes
   uint32_t firstUse = kNone, lastUse = kNone;  ///< pass indices within a frame, readers of this frame's value
 };
 
@@ -38,8 +38,8 @@ struct Binding {
   bool previous = false;      ///< reads last frame's copy
 };
 
-/// Before this pass runs, `resource` must be made available from `before` to `after`. Passes only: who reads a graph output from
-/// outside the graph puts a barrier before and after.
+/// Before this pass runs, `resource` must be made available from `before` to `after`. Passes only: who reads a graph
+/// output from outside the graph puts a barrier before and after.
 struct Barrier {
   uint32_t resource = kNone;
   bool previous = false;
@@ -87,14 +87,15 @@ struct PassCatalog {
   std::function<std::string(const std::string& type)> problem;
 };
 
-/// Checks everything and plans. Findings are appended; when there are any (also from earlier steps), the result must not be used.
-/// Order: topological by edges without @previous, ties broken by pass name, so that equal graphs give equal plans.
+/// Checks everything and plans. Findings are appended; when there are any (also from earlier steps), the result must
+/// not be used. Order: topological by edges without @previous, ties broken by pass name, so that equal graphs give
+/// equal plans.
 CompiledGraph compile(const Description& description, const PassCatalog& catalog, uint32_t width, uint32_t height,
                       std::vector<Diagnostic>& diagnostics);
 
 /// load/parse → apply → compile, throwing GraphError when anything was found.
-CompiledGraph compileFile(const std::string& path, const Overrides& overrides, const PassCatalog& catalog, uint32_t width,
-                          uint32_t height);
+CompiledGraph compileFile(const std::string& path, const Overrides& overrides, const PassCatalog& catalog,
+                          uint32_t width, uint32_t height);
 
 /// `weir graph explain` and `dot`.
 std::string explain(const CompiledGraph& graph);

@@ -58,15 +58,15 @@ struct OutputEntry {
 
 struct Description {
   std::string file, name;
-  bool broken = false;             ///< no JSON, or without passes: further checks would only make noise
+  bool broken = false;            ///< no JSON, or without passes: further checks would only make noise
   std::vector<PassEntry> passes;  ///< in the file's order, which means nothing
   std::vector<OutputEntry> outputs;
   PassEntry* find(const std::string& pass);
   const PassEntry* find(const std::string& pass) const;
 };
 
-/// Parses JSON. Structural findings (bad JSON, wrong kinds, unknown and repeated keys, malformed references) are appended to
-/// `diagnostics`; what could be read is returned, so that later checks can report too.
+/// Parses JSON. Structural findings (bad JSON, wrong kinds, unknown and repeated keys, malformed references) are
+/// appended to `diagnostics`; what could be read is returned, so that later checks can report too.
 Description parse(const std::string& json, const std::string& file, std::vector<Diagnostic>& diagnostics);
 /// Reads the file first; InputError when it can't be read.
 Description load(const std::string& path, std::vector<Diagnostic>& diagnostics);

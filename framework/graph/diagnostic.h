@@ -9,11 +9,11 @@
 namespace weir::graph {
 
 struct Diagnostic {
-  std::string file;     ///< or "--set", "--enable", … for what the command line said
-  int line = 0;         ///< 1-based; 0 where there is none
-  std::string path;     ///< "passes.spatial.params.neighbours"
-  std::string message;  ///< what is wrong and what was expected
-  std::string nearest;  ///< the nearest valid name, or empty
+  std::string file;          ///< or "--set", "--enable", … for what the command line said
+  int line = 0;              ///< 1-based; 0 where there is none
+  std::string path;          ///< "passes.spatial.params.neighbours"
+  std::string message;       ///< what is wrong and what was expected
+  std::string nearest;       ///< the nearest valid name, or empty
   std::string text() const;  ///< "file:12: passes.spatial.…: unknown parameter 'neighbors' (nearest: 'neighbours')"
 };
 

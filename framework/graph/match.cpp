@@ -11,8 +11,7 @@ class Matcher {
   Matcher(Checked& checked, Findings& findings) : checked_(checked), findings_(findings) {}
 
   void match() {
-    for (uint32_t n = 0; n < checked_.nodes.size(); ++n) {
-      Node& node = checked_.nodes[n];
+    for (Node& node : checked_.nodes) {
       if (node.type) node.perPixel.assign(node.type->outputs.size(), 0);
       state_.emplace_back(node.perPixel.size(), State::Unknown);
     }

@@ -1,5 +1,6 @@
-// What a pass says of itself, statically: ports, parameters, and what it takes from scene and frame. This one description yields
-// the graph's validation, the shader's bindings, `weir passes`, the JSON Schema and the generated documentation.
+// What a pass says of itself, statically: ports, parameters, and what it takes from scene and frame. This one
+// description yields the graph's validation, the shader's bindings, `weir passes`, the JSON Schema and the generated
+// documentation.
 #pragma once
 
 #include <weir/core/text.h>
@@ -26,9 +27,9 @@ struct Field {
 struct Layout {
   std::string name;
   uint32_t version = 1;
-  uint32_t stride = 0;      ///< bytes, by std430's rules
-  uint64_t hash = 0;        ///< FNV-1a of name, version and fields
-  uint32_t emptyWord = 0;   ///< 32-bit pattern that an unwritten history is filled with
+  uint32_t stride = 0;     ///< bytes, by std430's rules
+  uint64_t hash = 0;       ///< FNV-1a of name, version and fields
+  uint32_t emptyWord = 0;  ///< 32-bit pattern that an unwritten history is filled with
   std::vector<Field> fields;
   std::string glsl() const;  ///< "struct Name { … };"
 };
@@ -43,8 +44,9 @@ constexpr uint32_t std430Stride(const Field* fields, size_t count) {
   constexpr struct {
     std::string_view type;
     uint32_t size, align;
-  } kTypes[] = {{"float", 4, 4}, {"uint", 4, 4}, {"int", 4, 4}, {"vec2", 8, 8}, {"uvec2", 8, 8}, {"ivec2", 8, 8},
-                {"vec3", 12, 16}, {"uvec3", 12, 16}, {"vec4", 16, 16}, {"uvec4", 16, 16}, {"ivec4", 16, 16}};
+  } kTypes[] = {{"float", 4, 4},  {"uint", 4, 4},    {"int", 4, 4},    {"vec2", 8, 8},
+                {"uvec2", 8, 8},  {"ivec2", 8, 8},   {"vec3", 12, 16}, {"uvec3", 12, 16},
+                {"vec4", 16, 16}, {"uvec4", 16, 16}, {"ivec4", 16, 16}};
   uint32_t offset = 0, align = 4;
   for (size_t i = 0; i < count; ++i) {
     bool known = false;
@@ -80,10 +82,10 @@ enum class PortKind : uint8_t { Buffer, Image };
 /// What a port carries: a storage buffer of structs or a storage image, sized relative to the frame.
 struct PortType {
   PortKind kind = PortKind::Buffer;
-  Layout layout;                   ///< buffers
-  Format format = Format::RGBA32F;  ///< images
+  Layout layout;                                      ///< buffers
+  Format format = Format::RGBA32F;                    ///< images
   uint32_t scaleNumerator = 1, scaleDenominator = 1;  ///< of the frame's width and height, rounded up
-  uint32_t fixedCount = 0;  ///< buffers: this many elements, whatever the frame; 0: per pixel
+  uint32_t fixedCount = 0;                            ///< buffers: this many elements, whatever the frame; 0: per pixel
   /// Elements a pixel: a constant, the value of an integer parameter, or the count of one of the pass's inputs.
   uint32_t perPixel = 1;
   std::string perPixelFromParam, perPixelFromInput;
@@ -131,8 +133,8 @@ struct ParamDescription {
   std::string name;
   ParamType type = ParamType::Float;
   ParamValue defaultValue;
-  std::optional<double> low, high;      ///< inclusive
-  std::vector<std::string> choices;     ///< Enum; its value on the GPU is the index
+  std::optional<double> low, high;   ///< inclusive
+  std::vector<std::string> choices;  ///< Enum; its value on the GPU is the index
   std::string unit, doc;
   bool specialises = false;  ///< a specialisation constant: the pipeline is rebuilt when it changes
 };
@@ -165,14 +167,14 @@ class PassDescription {
    public:
     explicit Port(PortDescription& d) : d_(d) {}
     Port& doc(std::string text);
-    Port& optional();                                ///< inputs
-    Port& passesThrough(std::string input);          ///< outputs
-    Port& times(std::string intParam);               ///< outputs: elements a pixel = that parameter
-    Port& countOf(std::string input);                ///< outputs: elements a pixel as in that input
-    Port& anyCount();                                ///< inputs: any number of elements a pixel
+    Port& optional();                        ///< inputs
+    Port& passesThrough(std::string input);  ///< outputs
+    Port& times(std::string intParam);       ///< outputs: elements a pixel = that parameter
+    Port& countOf(std::string input);        ///< outputs: elements a pixel as in that input
+    Port& anyCount();                        ///< inputs: any number of elements a pixel
     Port& scale(uint32_t numerator, uint32_t denominator);
-    Port& radiance();                                ///< linear Rec.709 radiance
-    Port& display();                                 ///< display-referred, [0, 1]
+    Port& radiance();  ///< linear Rec.709 radiance
+    Port& display();   ///< display-referred, [0, 1]
 
    private:
     PortDescription& d_;
@@ -216,7 +218,8 @@ class PassDescription {
   std::vector<NeedDescription> wants;
 };
 
-/// Whether an output's resource can be read through an input, element counts aside (those are compared in the compiled graph).
+/// Whether an output's resource can be read through an input, element counts aside (those are compared in the compiled
+/// graph).
 bool compatible(const PortType& output, const PortType& input);
 /// "Reservoir v1 (16 bytes, hash 0x…)" or "image RGBA32F", for messages.
 std::string describe(const PortType& type);

@@ -1,5 +1,6 @@
-// A pass: what it does with its ports once the graph is compiled. It asks for kernels by shader file and launches them; ports,
-// parameters, scene and frame data are bound by name (shaders see in_<port>, out_<port>, scratch_<name>, param_<name>).
+// A pass: what it does with its ports once the graph is compiled. It asks for kernels by shader file and launches them;
+// ports, parameters, scene and frame data are bound by name (shaders see in_<port>, out_<port>, scratch_<name>,
+// param_<name>).
 #pragma once
 
 #include <weir/pass/description.h>
@@ -17,7 +18,8 @@ struct Kernel {
 };
 
 struct KernelOptions {
-  /// What this kernel sees in place of a port: {"in_reservoirs", "scratch_ping"}; both sides name the pass's own ports or scratch.
+  /// What this kernel sees in place of a port: {"in_reservoirs", "scratch_ping"}; both sides name the pass's own ports
+  /// or scratch.
   std::vector<std::pair<std::string, std::string>> bind;
   std::vector<std::pair<std::string, std::string>> defines;
   /// Shader files that exist only in memory, found by #include "name".
@@ -31,7 +33,8 @@ struct TextureData {
   std::vector<float> rgba;
 };
 
-/// Answers about the compiled pass. Asking for what the description doesn't declare throws InputError naming pass and name.
+/// Answers about the compiled pass. Asking for what the description doesn't declare throws InputError naming pass and
+/// name.
 class PassContext {
  public:
   virtual ~PassContext() = default;
@@ -40,7 +43,7 @@ class PassContext {
   virtual float number(const std::string& param) const = 0;
   virtual std::string text(const std::string& param) const = 0;  ///< String, or an Enum's choice
   virtual bool connected(const std::string& input) const = 0;
-  virtual uint32_t width() const = 0;   ///< of the frame
+  virtual uint32_t width() const = 0;  ///< of the frame
   virtual uint32_t height() const = 0;
   virtual std::string sceneFolder() const = 0;
 };
@@ -55,9 +58,11 @@ class PrepareContext : public PassContext {
   virtual Kernel kernel(const std::string& file, const KernelOptions& options = {}) = 0;
   /// The same, and it may trace rays (needs scene.acceleration): a ray generation shader or compute with ray queries.
   virtual Kernel rayKernel(const std::string& file, const KernelOptions& options = {}) = 0;
-  /// Draws every triangle of the scene that faces the camera or is double-sided, depth-tested, into an R32U scratch image cleared to ~0. The file defines
-  /// `vec4 vertex(uint instance, uint triangle, uint corner)` (clip position) and `uint fragment(...)`: see shaders/gbuffer/raster.glsl.
-  virtual Kernel rasterKernel(const std::string& file, const std::string& target, const KernelOptions& options = {}) = 0;
+  /// Draws every triangle of the scene that faces the camera or is double-sided, depth-tested, into an R32U scratch
+  /// image cleared to ~0. The file defines `vec4 vertex(uint instance, uint triangle, uint corner)` (clip position) and
+  /// `uint fragment(...)`: see shaders/gbuffer/raster.glsl.
+  virtual Kernel rasterKernel(const std::string& file, const std::string& target,
+                              const KernelOptions& options = {}) = 0;
 };
 
 /// Called every frame. Launches run in order; each sees what the ones before it wrote.

@@ -19,7 +19,9 @@ namespace weir::render {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 void checkOptions(const RenderOptions& o) {
   if (o.width == 0 || o.height == 0 || o.width > 16384 || o.height > 16384) {
@@ -27,13 +29,15 @@ void checkOptions(const RenderOptions& o) {
   }
   if (o.frames == 0) throw InputError("--frames must be at least 1");
   if (o.restarts == 0) throw InputError("--restarts must be at least 1");
-  if (o.average == 0 || o.average > o.frames) throw InputError(fmt::format("--average {}: must be 1 … --frames {}", o.average, o.frames));
+  if (o.average == 0 || o.average > o.frames)
+    throw InputError(fmt::format("--average {}: must be 1 … --frames {}", o.average, o.frames));
   if (!o.errors.empty() && o.restarts < 2) throw InputError("--stderr needs --restarts 2 or more");
   for (const auto* list : {&o.outputs, &o.errors}) {
     for (const auto& [name, file] : *list) {
       const std::string extension = std::filesystem::path(file).extension().string();
       if (extension != ".exr" && (extension != ".png" || list == &o.errors)) {
-        throw InputError(fmt::format("{}={}: the file must end in .exr{}", name, file, list == &o.errors ? "" : " or .png"));
+        throw InputError(
+            fmt::format("{}={}: the file must end in .exr{}", name, file, list == &o.errors ? "" : " or .png"));
       }
       checkWritable(file);
     }
@@ -73,7 +77,8 @@ std::vector<std::string> wanted(const RenderOptions& o, const graph::CompiledGra
   return names;
 }
 
-std::map<std::string, std::string> header(const RenderOptions& o, const Stage& stage, const graph::CompiledGraph& graph) {
+std::map<std::string, std::string> header(const RenderOptions& o, const Stage& stage,
+                                          const graph::CompiledGraph& graph) {
   std::map<std::string, std::string> h;
   h["weir.scene"] = stage.sceneLabel;
   h["weir.camera"] = stage.cameraLabel;
@@ -86,13 +91,15 @@ std::map<std::string, std::string> header(const RenderOptions& o, const Stage& s
   h["weir.params"] = params;
   h["weir.seed"] = std::to_string(o.seed);
   h["weir.size"] = fmt::format("{}x{}", o.width, o.height);
-  h["weir.frames"] = fmt::format("{} from {}, mean of last {}, {} restarts", o.frames, o.firstFrame, o.average, o.restarts);
+  h["weir.frames"] =
+      fmt::format("{} from {}, mean of last {}, {} restarts", o.frames, o.firstFrame, o.average, o.restarts);
   return h;
 }
 
 /// Renders one frame of `executor` with rays counted, after as many as give the history its usual length.
-uint64_t countRays(const gpu::Device& device, shader::Compiler& compiler, Registry& registry, const scene::SceneGpu& scene,
-                   const execute::Executor& timed, execute::ExecutorOptions options, const Stage& stage, uint32_t frames) {
+uint64_t countRays(const gpu::Device& device, shader::Compiler& compiler, Registry& registry,
+                   const scene::SceneGpu& scene, const execute::Executor& timed, execute::ExecutorOptions options,
+                   const Stage& stage, uint32_t frames) {
   options.countRays = true;
   execute::Executor executor(device, compiler, registry, scene, timed.graph(), options);
   for (uint32_t f = 0; f < std::min(frames, 3u); ++f) executor.frame({stage.camera, f, 0, false});
@@ -119,7 +126,8 @@ void render(const RenderOptions& o) {
   const Stage stage = makeStage(o.stage, static_cast<float>(o.width) / static_cast<float>(o.height));
   if (o.warn) {
     for (const std::string& warning : stage.scene.warnings) o.warn(warning);
-    if (stage.prepared.lights.empty()) o.warn("the scene has no lights: the picture will be black (--lights N adds some)");
+    if (stage.prepared.lights.empty())
+      o.warn("the scene has no lights: the picture will be black (--lights N adds some)");
   }
   gpu::DeviceOptions deviceOptions;
   deviceOptions.choice = o.device;

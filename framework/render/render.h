@@ -25,7 +25,8 @@ struct RenderOptions {
   uint32_t firstFrame = 0;  ///< number of the first frame
   uint32_t seed = 0;
   std::vector<std::pair<std::string, std::string>> outputs;  ///< graph output → file (.exr or .png)
-  std::vector<std::pair<std::string, std::string>> errors;   ///< graph output → file with the standard error over restarts
+  std::vector<std::pair<std::string, std::string>>
+      errors;                     ///< graph output → file with the standard error over restarts
   std::optional<float> exposure;  ///< EV, for every output.Tonemap
   std::string trace = "auto";
   std::string device;
@@ -40,7 +41,8 @@ struct RenderOptions {
 /// Seed of a restart: independent of its neighbours', restart 0 keeps the given one.
 uint32_t restartSeed(uint32_t seed, uint32_t restart);
 
-/// Checks everything that can be checked before any work, renders, writes. Throws InputError, graph::GraphError, RuntimeError.
+/// Checks everything that can be checked before any work, renders, writes. Throws InputError, graph::GraphError,
+/// RuntimeError.
 void render(const RenderOptions& options);
 
 }  // namespace weir::render

@@ -43,7 +43,8 @@ Stage makeStage(const StageOptions& options, float aspect) {
   const auto start = std::chrono::steady_clock::now();
   s.scene = scene::importGltf(options.scene);
   s.importSeconds = secondsSince(start);
-  s.sceneLabel = fmt::format("{} {:016x}", std::filesystem::path(options.scene).filename().string(), fileHash(options.scene));
+  s.sceneLabel =
+      fmt::format("{} {:016x}", std::filesystem::path(options.scene).filename().string(), fileHash(options.scene));
   s.lightsLabel = "scene";
   if (options.replaceLights) {
     if (options.lights == 0) throw InputError("--replace-lights needs --lights N");
@@ -52,16 +53,17 @@ Stage makeStage(const StageOptions& options, float aspect) {
   }
   if (options.lights > 0) {
     if (hasLights(s.scene)) {
-      throw InputError(fmt::format("--lights: {} has lights of its own; --replace-lights takes them away", options.scene));
+      throw InputError(
+          fmt::format("--lights: {} has lights of its own; --replace-lights takes them away", options.scene));
     }
     scene::addGeneratedLights(s.scene, options.lights, options.lightSeed);
     s.lightsLabel = fmt::format("{} points, seed {}", options.lights, options.lightSeed);
   }
   s.camera = scene::chooseCamera(s.scene, options.camera, aspect);
   const scene::Camera& c = s.camera;
-  s.cameraLabel = fmt::format("eye {:.9g} {:.9g} {:.9g} forward {:.9g} {:.9g} {:.9g} up {:.9g} {:.9g} {:.9g} vfov {:.9g}", c.eye.x,
-                              c.eye.y, c.eye.z, c.forward.x, c.forward.y, c.forward.z, c.up.x, c.up.y, c.up.z,
-                              glm::degrees(c.verticalFov));
+  s.cameraLabel = fmt::format(
+      "eye {:.9g} {:.9g} {:.9g} forward {:.9g} {:.9g} {:.9g} up {:.9g} {:.9g} {:.9g} vfov {:.9g}", c.eye.x, c.eye.y,
+      c.eye.z, c.forward.x, c.forward.y, c.forward.z, c.up.x, c.up.y, c.up.z, glm::degrees(c.verticalFov));
   const auto prepare = std::chrono::steady_clock::now();
   s.prepared = scene::prepareScene(s.scene);
   s.prepareSeconds = secondsSince(prepare);

@@ -11,8 +11,8 @@
 namespace weir::render {
 
 struct StageOptions {
-  std::string scene;           ///< file
-  uint32_t lights = 0;         ///< `--lights N`; 0: the scene's own
+  std::string scene;    ///< file
+  uint32_t lights = 0;  ///< `--lights N`; 0: the scene's own
   uint32_t lightSeed = 1;
   bool replaceLights = false;  ///< drop the scene's own lights, emissive triangles included
   std::string camera;          ///< as `--camera`

@@ -9,7 +9,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json toJson(const Quantiles& q) { return {{"median", q.median}, {"p95", q.p95}, {"p99", q.p99}}; }
+Json toJson(const Quantiles& q) {
+  return {{"median", q.median}, {"p95", q.p95}, {"p99", q.p99}};
+}
 
 }  // namespace
 

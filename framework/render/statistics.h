@@ -22,6 +22,7 @@ struct RunFacts {
 };
 
 /// Frames from the first tenth on (at least one) are left out as warm-up when there are three or more.
-std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<execute::FrameTimes>& times, const RunFacts& facts);
+std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<execute::FrameTimes>& times,
+                           const RunFacts& facts);
 
 }  // namespace weir::render

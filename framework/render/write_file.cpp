@@ -12,7 +12,8 @@ void checkWritable(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path().empty() ? fs::path(".") : fs::path(path).parent_path();
   if (!fs::is_directory(folder)) throw InputError("can't write " + path + ": no folder " + folder.string());
   if (fs::is_directory(path)) throw InputError("can't write " + path + ": that is a folder");
-  if (access(folder.c_str(), W_OK) != 0) throw InputError("can't write " + path + ": no permission in " + folder.string());
+  if (access(folder.c_str(), W_OK) != 0)
+    throw InputError("can't write " + path + ": no permission in " + folder.string());
 }
 
 void writeTextFile(const std::string& path, const std::string& text) {

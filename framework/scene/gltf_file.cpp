@@ -43,11 +43,11 @@ std::string percentDecode(const std::string& text) {
 
 /// RFC 4648 base64, padding optional; false on any other character.
 bool decodeBase64(std::string_view text, Bytes& out) {
-  static const std::array<int8_t, 256> values = [] {
-    std::array<int8_t, 256> t;
+  static const std::array<int16_t, 256> values = [] {
+    std::array<int16_t, 256> t;
     t.fill(-1);
     const std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < alphabet.size(); ++i) t[static_cast<uint8_t>(alphabet[i])] = static_cast<int8_t>(i);
+    for (size_t i = 0; i < alphabet.size(); ++i) t[static_cast<uint8_t>(alphabet[i])] = static_cast<int16_t>(i);
     return t;
   }();
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);

@@ -1,4 +1,5 @@
-// glTF 2.0 files to a plain scene, behind guards: whatever the file holds, the result is a valid Scene or an InputError.
+// glTF 2.0 files to a plain scene, behind guards: whatever the file holds, the result is a valid Scene or an
+// InputError.
 #pragma once
 
 #include <weir/scene/scene.h>
@@ -17,8 +18,8 @@ struct ImportLimits {
 };
 
 /// Reads a .gltf or .glb. Every accessor is checked against its buffer in 64 bits, every URI stays inside the
-/// scene's folder, unknown entries of `extensionsRequired` are refused by name and unknown optional ones are warned about.
-/// Throws InputError with file, JSON place and reason.
+/// scene's folder, unknown entries of `extensionsRequired` are refused by name and unknown optional ones are warned
+/// about. Throws InputError with file, JSON place and reason.
 Scene importGltf(const std::string& path, const ImportLimits& limits = {});
 
 }  // namespace weir::scene

@@ -29,29 +29,34 @@ struct GpuLight {
 };
 static_assert(sizeof(GpuLight) == 64);
 
-/// One cell of the alias table (Vose 1991): with u uniform in [0,1), keep this cell's light if u < threshold, else take `alias`.
+/// One cell of the alias table (Vose 1991): with u uniform in [0,1), keep this cell's light if u < threshold, else take
+/// `alias`.
 struct AliasCell {
   float threshold = 1.0f;
   uint32_t alias = 0;
 };
 static_assert(sizeof(AliasCell) == 8);
 
-/// Vose's method in O(n). Weights are non-negative and finite, in any scale; the table reproduces weight/sum to within 1e-6
-/// relative to 1/n. All weights zero: an empty table. NaN, infinite or negative weights throw InputError.
+/// Vose's method in O(n). Weights are non-negative and finite, in any scale; the table reproduces weight/sum to within
+/// 1e-6 relative to 1/n. All weights zero: an empty table. NaN, infinite or negative weights throw InputError.
 std::vector<AliasCell> buildAliasTable(const std::vector<double>& weights);
 
-/// The exact probabilities that a table implements, for checks: p[i] = (threshold_i + Σ_{alias_j = i} (1 - threshold_j)) / n.
+/// The exact probabilities that a table implements, for checks: p[i] = (threshold_i + Σ_{alias_j = i} (1 -
+/// threshold_j)) / n.
 std::vector<double> aliasProbabilities(const std::vector<AliasCell>& table);
 
-/// `--lights N`: N point lights, positions uniform in the scene's bounds, colours uniform in [0,1]³ scaled so that the total of
-/// their luminous intensity is kGeneratedIntensity · r² candela for bounding radius r, whatever N. Counter-based from `seed`:
-/// the first k lights' positions are the same for every N ≥ k. Number d of light i is the top 24 bits of mix(mix(mix(seed) ^ i) + d),
-/// mix being SplitMix64's step; d = 0, 1, 2 place it in the bounds, colour c_i is d = 3, 4, 5, and
-/// intensity_i = c_i · kGeneratedIntensity · r² / Σ_j luminance(c_j). Throws InputError when there is no geometry. Replaces nothing: the caller empties Scene::lights where asked.
+/// `--lights N`: N point lights, positions uniform in the scene's bounds, colours uniform in [0,1]³ scaled so that the
+/// total of their luminous intensity is kGeneratedIntensity · r² candela for bounding radius r, whatever N.
+/// Counter-based from `seed`: the first k lights' positions are the same for every N ≥ k. Number d of light i is the
+/// top 24 bits of mix(mix(mix(seed) ^ i) + d), mix being SplitMix64's step; d = 0, 1, 2 place it in the bounds, colour
+/// c_i is d = 3, 4, 5, and intensity_i = c_i · kGeneratedIntensity · r² / Σ_j luminance(c_j). Throws InputError when
+/// there is no geometry. Replaces nothing: the caller empties Scene::lights where asked.
 void addGeneratedLights(Scene& scene, uint32_t count, uint32_t seed);
 inline constexpr float kGeneratedIntensity = 10.0f;
 
 /// Luminance of linear Rec.709.
-inline float luminance(const glm::vec3& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+inline float luminance(const glm::vec3& c) {
+  return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+}
 
 }  // namespace weir::scene

@@ -13,8 +13,9 @@ namespace weir::scene {
 
 /// Vertex attributes besides the position, 16 bytes.
 struct PackedVertex {
-  uint32_t normal = 0;   ///< octahedral, 2 × snorm16
-  uint32_t tangent = 0;  ///< octahedral, snorm16 + snorm15, lowest bit of the upper half set when the bitangent's sign is -1
+  uint32_t normal = 0;  ///< octahedral, 2 × snorm16
+  uint32_t tangent =
+      0;  ///< octahedral, snorm16 + snorm15, lowest bit of the upper half set when the bitangent's sign is -1
   float u = 0.0f, v = 0.0f;
 };
 static_assert(sizeof(PackedVertex) == 16);
@@ -59,9 +60,9 @@ struct TriangleRange {
   bool doubleSided = false;
 };
 
-/// An instance in the top-level structure; ranges 0 and 1 are the merged static geometry, single-sided and double-sided,
-/// with identity transforms.
-/// Triangle t of a hit = range.first + (geometry == 1 ? range.opaque : 0) + primitive.
+/// An instance in the top-level structure; ranges 0 and 1 are the merged static geometry, single-sided and
+/// double-sided, with identity transforms. Triangle t of a hit = range.first + (geometry == 1 ? range.opaque : 0) +
+/// primitive.
 struct PreparedInstance {
   uint32_t range = 0;
   glm::mat4 toWorld{1.0f};
@@ -76,20 +77,21 @@ struct PreparedScene {
   std::vector<PreparedInstance> instances;  ///< never empty when there are triangles
   std::vector<PackedMaterial> materials;    ///< the last one is glTF's default material
   std::vector<PreparedTexture> textures;
-  std::vector<GpuLight> lights;      ///< those that can emit at all, triangles first
+  std::vector<GpuLight> lights;       ///< those that can emit at all, triangles first
   std::vector<AliasCell> aliasTable;  ///< empty when there are no lights
   uint32_t triangleLights = 0;        ///< how many of `lights` are triangles
   Bounds bounds;
   uint64_t droppedTriangles = 0;  ///< degenerate or not finite
 };
 
-/// Arranges a scene, CPU only. Alpha-tested are the materials with mask or blend. Under an instance that flips the winding, object-space
-/// tangents' bitangent signs flip too. Textured triangle lights (kLightTextured): radiance is the factor alone, power uses the
-/// texture's mean over the triangle's texels; a triangle whose texels are all black is no light. Static meshes are merged into world space (winding mended under mirroring transforms) except those that
-/// are shared so often that merging would multiply memory; emissive ones are always merged, so that a light's triangle is
-/// unique. Power of a triangle: π · area · luminance of its mean emission (twice that when double-sided); of a point 4π · luminance
-/// of its intensity; a spot by its cone; a directional by the area of the scene's disc.
-/// A mesh is not merged when `uses >= mergeUses` and `uses * triangles > mergeTriangles`.
+/// Arranges a scene, CPU only. Alpha-tested are the materials with mask or blend. Under an instance that flips the
+/// winding, object-space tangents' bitangent signs flip too. Textured triangle lights (kLightTextured): radiance is the
+/// factor alone, power uses the texture's mean over the triangle's texels; a triangle whose texels are all black is no
+/// light. Static meshes are merged into world space (winding mended under mirroring transforms) except those that are
+/// shared so often that merging would multiply memory; emissive ones are always merged, so that a light's triangle is
+/// unique. Power of a triangle: π · area · luminance of its mean emission (twice that when double-sided); of a point 4π
+/// · luminance of its intensity; a spot by its cone; a directional by the area of the scene's disc. A mesh is not
+/// merged when `uses >= mergeUses` and `uses * triangles > mergeTriangles`.
 struct PrepareLimits {
   uint64_t mergeTriangles = 2'000'000;
   uint32_t mergeUses = 4;
@@ -99,8 +101,8 @@ PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits = {})
 /// What `weir scene` prints.
 struct SceneSummary {
   uint64_t storedTriangles = 0, instancedTriangles = 0, vertices = 0;
-  uint32_t meshes = 0, primitives = 0, instances = 0, materials = 0, maskedMaterials = 0, blendMaterials = 0, textures = 0,
-           images = 0, cameras = 0, animations = 0;
+  uint32_t meshes = 0, primitives = 0, instances = 0, materials = 0, maskedMaterials = 0, blendMaterials = 0,
+           textures = 0, images = 0, cameras = 0, animations = 0;
   uint32_t pointLights = 0, spotLights = 0, directionalLights = 0;
   uint64_t emissiveTriangles = 0;  ///< of materials with a non-zero emissive factor
   Bounds bounds;

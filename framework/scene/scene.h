@@ -9,7 +9,8 @@
 
 namespace weir::scene {
 
-/// Decoded texels, 8 bits a channel, RGBA, row 0 at the top. Images that no material's slot uses are not decoded: width 0, no texels.
+/// Decoded texels, 8 bits a channel, RGBA, row 0 at the top. Images that no material's slot uses are not decoded: width
+/// 0, no texels.
 struct Image {
   std::string name;
   uint32_t width = 0, height = 0;

@@ -14,13 +14,18 @@ constexpr uint32_t kMostSets = 64;  // executors over one scene at a time
 
 VkSamplerAddressMode addressMode(Wrap wrap) {
   switch (wrap) {
-    case Wrap::MirroredRepeat: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
-    case Wrap::ClampToEdge: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    default: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    case Wrap::MirroredRepeat:
+      return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    case Wrap::ClampToEdge:
+      return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    default:
+      return VK_SAMPLER_ADDRESS_MODE_REPEAT;
   }
 }
 
-VkFilter filter(Filter f) { return f == Filter::Nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR; }
+VkFilter filter(Filter f) {
+  return f == Filter::Nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
+}
 
 std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vector<SceneGpu::Draw>& draws) {
   std::vector<GpuInstance> result;
@@ -66,9 +71,10 @@ float longestSide(const PreparedScene& prepared) {
 
 SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const PreparedScene& prepared, bool withAcceleration)
     : device_(&device), withAcceleration_(withAcceleration) {
-  const VkBufferUsageFlags build = withAcceleration ? VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-                                                          VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT
-                                                    : 0;
+  const VkBufferUsageFlags build = withAcceleration
+                                       ? VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                                             VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT
+                                       : 0;
   positions_ = gpu::uploadBuffer(device, prepared.positions, kStorage | build, "scene positions");
   vertices_ = gpu::uploadBuffer(device, prepared.vertices, kStorage, "scene vertices");
   triangles_ = gpu::uploadBuffer(device, prepared.triangles, kStorage, "scene triangles");
@@ -117,7 +123,8 @@ void SceneGpu::uploadTextures(const Scene& scene, const PreparedScene& prepared)
       desc.width = source.width;
       desc.height = source.height;
       desc.format = t.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
-      images_.push_back(gpu::uploadImage(*device_, desc, std::as_bytes(std::span(source.rgba)), "texture " + source.name));
+      images_.push_back(
+          gpu::uploadImage(*device_, desc, std::as_bytes(std::span(source.rgba)), "texture " + source.name));
     }
     VkSampler& sampler = samplerOf[{t.wrapS, t.wrapT, t.magFilter, t.minFilter}];
     if (sampler == VK_NULL_HANDLE) {
@@ -174,8 +181,9 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
   gpu::check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set), "vkAllocateDescriptorSets");
 
   const VkDescriptorBufferInfo frame{frameConstants.handle(), 0, slotBytes};
-  const std::array<VkBuffer, 8> handles = {positions_.handle(), vertices_.handle(),  triangles_.handle(), instances_.handle(),
-                                           materials_.handle(), lights_.handle(),    alias_.handle(),     rayCounter.handle()};
+  const std::array<VkBuffer, 8> handles = {positions_.handle(), vertices_.handle(),  triangles_.handle(),
+                                           instances_.handle(), materials_.handle(), lights_.handle(),
+                                           alias_.handle(),     rayCounter.handle()};
   std::array<VkDescriptorBufferInfo, 8> buffers{};
   std::vector<VkWriteDescriptorSet> writes;
   auto write = [&](uint32_t binding, VkDescriptorType type, uint32_t count) -> VkWriteDescriptorSet& {
@@ -193,10 +201,12 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
     write(kBindPositions + i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1).pBufferInfo = &buffers[i];
   }
   VkAccelerationStructureKHR top = acceleration_.top();
-  VkWriteDescriptorSetAccelerationStructureKHR acceleration{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR};
+  VkWriteDescriptorSetAccelerationStructureKHR acceleration{
+      VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR};
   acceleration.accelerationStructureCount = 1;
   acceleration.pAccelerationStructures = &top;
-  if (withAcceleration_) write(kBindAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1).pNext = &acceleration;
+  if (withAcceleration_)
+    write(kBindAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1).pNext = &acceleration;
   std::vector<VkDescriptorImageInfo> images;
   for (const Texture& t : textures_) {
     images.push_back({t.sampler, images_[t.image].view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});

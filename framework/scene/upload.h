@@ -1,4 +1,5 @@
-// A prepared scene on the device: buffers, textures, acceleration structures, and the descriptor set 0 that every kernel shares.
+// A prepared scene on the device: buffers, textures, acceleration structures, and the descriptor set 0 that every
+// kernel shares.
 #pragma once
 
 #include <weir/gpu/memory.h>
@@ -52,8 +53,9 @@ class SceneGpu {
 
   // What the frame constants say of the scene.
   uint32_t lightCount = 0, instanceCount = 0;
-  float diameter = 0.0f;               ///< of the bounding sphere, metres; at least twice the float error of its place
-  float largestSide = 0.0f;            ///< longest side of any triangle in the world, metres: rays meet it with an error that grows with it
+  float diameter = 0.0f;  ///< of the bounding sphere, metres; at least twice the float error of its place
+  float largestSide =
+      0.0f;  ///< longest side of any triangle in the world, metres: rays meet it with an error that grows with it
   struct Draw {
     uint32_t triangles;
     bool doubleSided, flipsWinding;

@@ -23,7 +23,7 @@ std::vector<std::string> filesOnDisk(const Sources& sources) {
 
 }  // namespace
 
-Compiler::Compiler(std::string cacheFolder) : cacheFolder_(weir::cacheFolder(cacheFolder)) {}
+Compiler::Compiler(const std::string& cacheFolder) : cacheFolder_(weir::cacheFolder(cacheFolder)) {}
 
 Module Compiler::compile(const CompileRequest& request) {
   Sources sources(request);

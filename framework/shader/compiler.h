@@ -22,13 +22,14 @@ struct CompileRequest {
   std::string name;    ///< for messages: the file's path, or what the text stands for
   std::string source;  ///< GLSL; may start without #version (460 is put in front)
   Stage stage = Stage::Compute;
-  std::vector<std::string> includeFolders;       ///< searched in order for #include "x" after the including file's own folder
+  std::vector<std::string>
+      includeFolders;  ///< searched in order for #include "x" after the including file's own folder
   std::map<std::string, std::string> virtualFiles;  ///< name → text; wins over folders
   std::vector<std::pair<std::string, std::string>> defines;
 };
 
 struct BufferBlock {
-  std::string name;       ///< block name
+  std::string name;  ///< block name
   uint32_t set = 0, binding = 0;
   uint32_t arrayStride = 0;  ///< of its last, unsized member; 0 when it has none
 };
@@ -40,12 +41,13 @@ struct Module {
 };
 
 /// Compiles for Vulkan 1.3 / SPIR-V 1.6. Thread-safe. Throws CompileError.
-/// The cache key covers the preprocessed text (includes followed), stage, defines and the compiler's version; an unreadable,
-/// truncated or foreign cache entry is compiled anew, and entries are written to a temporary file and renamed.
+/// The cache key covers the preprocessed text (includes followed), stage, defines and the compiler's version; an
+/// unreadable, truncated or foreign cache entry is compiled anew, and entries are written to a temporary file and
+/// renamed.
 class Compiler {
  public:
   /// `cacheFolder` empty: $WEIR_CACHE_DIR, else $XDG_CACHE_HOME/weir, else ~/.cache/weir; "-": no cache.
-  explicit Compiler(std::string cacheFolder = {});
+  explicit Compiler(const std::string& cacheFolder = {});
   Module compile(const CompileRequest& request);
 
  private:

@@ -23,9 +23,12 @@ VkTransformMatrixKHR transformOf(const glm::mat4& m) {
 
 const char* backendName(Backend backend) {
   switch (backend) {
-    case Backend::Pipeline: return "pipeline";
-    case Backend::Query: return "query";
-    default: return "none";
+    case Backend::Pipeline:
+      return "pipeline";
+    case Backend::Query:
+      return "query";
+    default:
+      return "none";
   }
 }
 
@@ -51,7 +54,9 @@ Acceleration::Acceleration(const gpu::Device& device, const scene::PreparedScene
   buildTop(scene);
 }
 
-Acceleration::~Acceleration() { destroy(); }
+Acceleration::~Acceleration() {
+  destroy();
+}
 
 Acceleration::Acceleration(Acceleration&& other) noexcept
     : device_(std::exchange(other.device_, nullptr)),
@@ -96,9 +101,10 @@ Acceleration::Structure Acceleration::build(const VkAccelerationStructureGeometr
                                           counts.data(), &sizes);
 
   Structure s;
-  s.buffer = gpu::Buffer(*device_, sizes.accelerationStructureSize,
-                         VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
-                         gpu::Residency::Device, name);
+  s.buffer =
+      gpu::Buffer(*device_, sizes.accelerationStructureSize,
+                  VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
+                  gpu::Residency::Device, name);
   VkAccelerationStructureCreateInfoKHR create{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR};
   create.buffer = s.buffer.handle();
   create.size = sizes.accelerationStructureSize;
@@ -171,9 +177,10 @@ void Acceleration::buildTop(const scene::PreparedScene& scene) {
     instance.transform = transformOf(source.toWorld);
     instance.instanceCustomIndex = static_cast<uint32_t>(i);
     instance.mask = 0xff;
-    // Facing is decided in object space, where glTF's fronts are counter-clockwise, as are Vulkan's: a mirroring transform turns the
-    // ray's side along with the winding.
-    if (scene.ranges[source.range].doubleSided) instance.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
+    // Facing is decided in object space, where glTF's fronts are counter-clockwise, as are Vulkan's: a mirroring
+    // transform turns the ray's side along with the winding.
+    if (scene.ranges[source.range].doubleSided)
+      instance.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
     instance.accelerationStructureReference = bottom_[source.range].address;
     instances.push_back(instance);
   }

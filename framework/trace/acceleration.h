@@ -12,8 +12,8 @@ namespace weir::trace {
 /// How rays are traced: in ray-tracing pipelines or by queries in compute shaders.
 enum class Backend : uint8_t { None, Pipeline, Query };
 
-/// From `--trace auto|pipeline|query` and what the device has; auto prefers the pipeline. Throws InputError naming what is missing.
-/// Returns None for "auto" on a device without ray tracing: graphs whose passes need none still run.
+/// From `--trace auto|pipeline|query` and what the device has; auto prefers the pipeline. Throws InputError naming what
+/// is missing. Returns None for "auto" on a device without ray tracing: graphs whose passes need none still run.
 Backend chooseBackend(const std::string& text, const gpu::Device& device);
 const char* backendName(Backend backend);
 

@@ -8,7 +8,8 @@
 
 namespace weir::passes {
 
-/// The first visible surface of a pixel: 24 bytes, what neighbour tests need in the first 16. distance 0: nothing was hit.
+/// The first visible surface of a pixel: 24 bytes, what neighbour tests need in the first 16. distance 0: nothing was
+/// hit.
 struct PackedSurface {
   float distance;            ///< along the ray, metres
   uint32_t geometricNormal;  ///< octahedral 2 × snorm16, faces the viewer

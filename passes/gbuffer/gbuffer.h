@@ -1,4 +1,5 @@
-// G-buffers: the first visible surface of every pixel. Two ways to it with the same ports, swapped by the graph's "type".
+// G-buffers: the first visible surface of every pixel. Two ways to it with the same ports, swapped by the graph's
+// "type".
 #pragma once
 
 #include <weir/pass/pass.h>

@@ -8,8 +8,12 @@ void RayTraced::describe(PassDescription& d) {
   d.needs(Need::SceneAcceleration);
 }
 
-void RayTraced::prepare(PrepareContext& c) { kernel_ = c.rayKernel("ray_traced.glsl"); }
+void RayTraced::prepare(PrepareContext& c) {
+  kernel_ = c.rayKernel("ray_traced.glsl");
+}
 
-void RayTraced::record(RecordContext& c) { c.launch(kernel_); }
+void RayTraced::record(RecordContext& c) {
+  c.launch(kernel_);
+}
 
 }  // namespace weir::passes

@@ -33,7 +33,7 @@ struct Opened {
 fs::path find(const std::string& origin, const std::string& file, const std::string& folder) {
   std::error_code error;
   if (fs::is_regular_file(file, error)) return file;
-  const fs::path beside = fs::path(folder) / file;
+  fs::path beside = fs::path(folder) / file;
   if (!folder.empty() && fs::is_regular_file(beside, error)) return beside;
   std::string places = fs::absolute(file, error).string();
   if (!folder.empty() && fs::path(file).is_relative()) places += " or " + beside.string();

@@ -14,8 +14,12 @@ void AllLights::describe(PassDescription& d) {
   d.needs(Need::FrameCamera).needs(Need::FrameIndex);
 }
 
-void AllLights::prepare(PrepareContext& c) { kernel_ = c.rayKernel("all_lights.glsl"); }
+void AllLights::prepare(PrepareContext& c) {
+  kernel_ = c.rayKernel("all_lights.glsl");
+}
 
-void AllLights::record(RecordContext& c) { c.launch(kernel_); }
+void AllLights::record(RecordContext& c) {
+  c.launch(kernel_);
+}
 
 }  // namespace weir::passes

@@ -9,11 +9,20 @@ void Initial::describe(PassDescription& d) {
   d.output("reservoirs", perPixel<Reservoir>()).times("samples").doc("One or more reservoirs a pixel");
   d.param("candidates", 32).range(1, 1024).doc("Lights that each pixel looks at");
   d.param("samples", 1).range(1, 4).doc("Reservoirs a pixel; they share the candidates");
-  d.param("uniformShare", 0.1f).range(0, 1).doc(
-      "Share of the candidates picked uniformly among all lights, the rest by power: bounds the error of dim lights close by");
-  d.param("triangles", "solidAngle").oneOf({"area", "solidAngle"}).specialises().doc(
-      "How a point on an emissive triangle is drawn: by area, or by solid angle where it looks large (no fireflies close to it)");
-  d.param("visibility", true).specialises().doc("Shoot a shadow ray to each chosen sample: hidden ones are not passed on");
+  d.param("uniformShare", 0.1f)
+      .range(0, 1)
+      .doc(
+          "Share of the candidates picked uniformly among all lights, the rest by power: bounds the error of dim "
+          "lights close by");
+  d.param("triangles", "solidAngle")
+      .oneOf({"area", "solidAngle"})
+      .specialises()
+      .doc(
+          "How a point on an emissive triangle is drawn: by area, or by solid angle where it looks large (no fireflies "
+          "close to it)");
+  d.param("visibility", true)
+      .specialises()
+      .doc("Shoot a shadow ray to each chosen sample: hidden ones are not passed on");
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
   d.needs(Need::FrameCamera).needs(Need::FrameIndex);
 }
@@ -22,6 +31,8 @@ void Initial::prepare(PrepareContext& c) {
   kernel_ = c.boolean("visibility") ? c.rayKernel("initial.glsl") : c.kernel("initial.glsl");
 }
 
-void Initial::record(RecordContext& c) { c.launch(kernel_); }
+void Initial::record(RecordContext& c) {
+  c.launch(kernel_);
+}
 
 }  // namespace weir::passes

@@ -15,9 +15,12 @@ void Shade::describe(PassDescription& d) {
 }
 
 void Shade::prepare(PrepareContext& c) {
-  kernel_ = c.boolean("visibility") ? c.rayKernel("shade.glsl", {.defines = {{"FINAL_VISIBILITY", "1"}}}) : c.kernel("shade.glsl");
+  kernel_ = c.boolean("visibility") ? c.rayKernel("shade.glsl", {.defines = {{"FINAL_VISIBILITY", "1"}}})
+                                    : c.kernel("shade.glsl");
 }
 
-void Shade::record(RecordContext& c) { c.launch(kernel_); }
+void Shade::record(RecordContext& c) {
+  c.launch(kernel_);
+}
 
 }  // namespace weir::passes

@@ -4,13 +4,18 @@
 namespace weir::passes {
 
 void describeReuse(PassDescription& d) {
-  d.param("mis", "pairwise").oneOf({"biased", "pairwise"}).specialises().doc(
-      "MIS weights: biased (by confidence alone, darkens at edges) or defensive pairwise");
-  d.param("visibilityRays", false).specialises().doc(
-      "Include visibility in the MIS weights and retest the survivor: unbiased with mis=pairwise");
+  d.param("mis", "pairwise")
+      .oneOf({"biased", "pairwise"})
+      .specialises()
+      .doc("MIS weights: biased (by confidence alone, darkens at edges) or defensive pairwise");
+  d.param("visibilityRays", false)
+      .specialises()
+      .doc("Include visibility in the MIS weights and retest the survivor: unbiased with mis=pairwise");
   d.param("depthThreshold", 0.1f).range(0, 10).doc("Greatest difference of distance, relative to the distance");
   d.param("normalThreshold", 25.0f).range(0, 180).unit("degrees").doc("Greatest angle between shading normals");
-  d.param("albedoThreshold", 1.0f).range(0, 1).doc("Greatest difference of diffuse albedo in any channel; 1 accepts all");
+  d.param("albedoThreshold", 1.0f)
+      .range(0, 1)
+      .doc("Greatest difference of diffuse albedo in any channel; 1 accepts all");
 }
 
 Kernel reuseKernel(PrepareContext& c, const char* file, KernelOptions options) {

@@ -17,8 +17,12 @@ void Temporal::describe(PassDescription& d) {
   d.needs(Need::FrameCamera).needs(Need::FrameIndex).needsPrevious(Need::FrameCamera);
 }
 
-void Temporal::prepare(PrepareContext& c) { kernel_ = reuseKernel(c, "temporal.glsl"); }
+void Temporal::prepare(PrepareContext& c) {
+  kernel_ = reuseKernel(c, "temporal.glsl");
+}
 
-void Temporal::record(RecordContext& c) { c.launch(kernel_); }
+void Temporal::record(RecordContext& c) {
+  c.launch(kernel_);
+}
 
 }  // namespace weir::passes

@@ -1,5 +1,6 @@
-// Do the unbiased settings of restir_di agree with the brute-force reference? A program rather than a test: on a GPU it runs long
-// enough to resolve a bias of some hundredths of a percent. Prints a row a setting and, with --json, writes the raw numbers.
+// Do the unbiased settings of restir_di agree with the brute-force reference? A program rather than a test: on a GPU it
+// runs long enough to resolve a bias of some hundredths of a percent. Prints a row a setting and, with --json, writes
+// the raw numbers.
 //   agreement --scene scenes/cornell.glb --size 256 --restarts 256 --frames 4
 #include <fmt/format.h>
 #include <weir/execute/executor.h>
@@ -41,8 +42,8 @@ class Laboratory {
   const render::Stage& stage() const { return stage_; }
 
   /// One sample a restart: the mean of its frames.
-  image::RestartAccumulator run(const std::string& graph, const graph::Overrides& overrides, uint32_t restarts, uint32_t frames,
-                                uint32_t seed) {
+  image::RestartAccumulator run(const std::string& graph, const graph::Overrides& overrides, uint32_t restarts,
+                                uint32_t frames, uint32_t seed) {
     execute::Executor executor(
         device_, compiler_, registry_, scene_,
         graph::compileFile(words_.graphs + "/" + graph, overrides, registry_.catalog(), words_.size, words_.size),
@@ -77,21 +78,26 @@ int run(const Words& words) {
                      words.referenceRestarts, 1, words.seed + 1000);
   const image::Picture truth = reference.mean(), truthError = reference.standardError();
 
-  const std::vector<std::string> rays = {"temporal.mis=pairwise", "spatial.mis=pairwise", "temporal.visibilityRays=true",
-                                         "spatial.visibilityRays=true"};
+  const std::vector<std::string> rays = {"temporal.mis=pairwise", "spatial.mis=pairwise",
+                                         "temporal.visibilityRays=true", "spatial.visibilityRays=true"};
   struct Setting {
     const char* name;
     std::vector<std::string> disable;
   };
   const Setting settings[] = {
       {"no reuse", {"temporal", "spatial"}}, {"temporal", {"spatial"}}, {"spatial", {"temporal"}}, {"both", {}}};
-  Json j = {{"device", laboratory.device().info().name}, {"scene", laboratory.stage().sceneLabel},
-            {"lights", laboratory.stage().lightsLabel},  {"camera", laboratory.stage().cameraLabel},
-            {"size", words.size},                        {"restarts", words.restarts},
-            {"frames", words.frames},                    {"reference_restarts", words.referenceRestarts},
-            {"reference_strata", words.referenceSamples * words.referenceSamples}, {"set", words.set}};
-  fmt::print("{} | {}², {} restarts of {} frames, tiles of {}²\n", laboratory.stage().sceneLabel, words.size, words.restarts,
-             words.frames, words.tile);
+  Json j = {{"device", laboratory.device().info().name},
+            {"scene", laboratory.stage().sceneLabel},
+            {"lights", laboratory.stage().lightsLabel},
+            {"camera", laboratory.stage().cameraLabel},
+            {"size", words.size},
+            {"restarts", words.restarts},
+            {"frames", words.frames},
+            {"reference_restarts", words.referenceRestarts},
+            {"reference_strata", words.referenceSamples * words.referenceSamples},
+            {"set", words.set}};
+  fmt::print("{} | {}², {} restarts of {} frames, tiles of {}²\n", laboratory.stage().sceneLabel, words.size,
+             words.restarts, words.frames, words.tile);
   bool passed = true;
   for (const Setting& s : settings) {
     graph::Overrides overrides;
@@ -100,13 +106,15 @@ int run(const Words& words) {
     overrides.disable = s.disable;
     const auto measured = laboratory.run("restir_di.json", overrides, words.restarts, words.frames, words.seed);
     const image::TileTest t = image::tileTest(measured.tiles(), truth, &truthError);
-    fmt::print("{:9} worst |t| {:5.2f} of {} tiles (bound {:.2f})  mean bias {:+.4f} % (99 %: {:+.4f} … {:+.4f})  a tile to {:.2f} %  {}\n",
-               s.name, t.worstT, t.tiles.size(), t.bound, 100 * t.relativeBias, 100 * t.intervalLow, 100 * t.intervalHigh,
-               100 * t.detectable, t.passed ? "agrees" : "DIFFERS");
+    fmt::print(
+        "{:9} worst |t| {:5.2f} of {} tiles (bound {:.2f})  mean bias {:+.4f} % (99 %: {:+.4f} … {:+.4f})  a tile to "
+        "{:.2f} %  {}\n",
+        s.name, t.worstT, t.tiles.size(), t.bound, 100 * t.relativeBias, 100 * t.intervalLow, 100 * t.intervalHigh,
+        100 * t.detectable, t.passed ? "agrees" : "DIFFERS");
     const image::TileResult& worst = t.tiles[t.worst];
     if (!t.passed) {
-      fmt::print("          worst tile at {}, {}: {:.6g} ± {:.2g} for {:.6g} ({:+.2f} %)\n", t.grid.left(t.worst), t.grid.top(t.worst),
-                 worst.mean, worst.standardError, worst.reference, 100 * worst.relativeBias);
+      fmt::print("          worst tile at {}, {}: {:.6g} ± {:.2g} for {:.6g} ({:+.2f} %)\n", t.grid.left(t.worst),
+                 t.grid.top(t.worst), worst.mean, worst.standardError, worst.reference, 100 * worst.relativeBias);
     }
     std::fflush(stdout);
     passed = passed && t.passed;

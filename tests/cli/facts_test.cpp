@@ -37,8 +37,9 @@ TEST_F(Program, PassesNamesEveryPass) {
       }
     }
   }
-  for (const char* type : {"gbuffer.RayTraced", "gbuffer.Raster", "restir_di.Initial", "restir_di.Temporal", "restir_di.Spatial",
-                           "restir_di.Shade", "output.Tonemap", "output.Accumulate", "reference.AllLights"}) {
+  for (const char* type :
+       {"gbuffer.RayTraced", "gbuffer.Raster", "restir_di.Initial", "restir_di.Temporal", "restir_di.Spatial",
+        "restir_di.Shade", "output.Tonemap", "output.Accumulate", "reference.AllLights"}) {
     EXPECT_TRUE(types.contains(type)) << type;
   }
   const Ran text = weir("passes");
@@ -81,7 +82,8 @@ TEST_F(Program, CompareOfEqualPicturesIsZero) {
   const Ran r = weir("compare " + file("a.exr") + " " + file("a.exr") + " --json --tiles 16");
   ASSERT_EQ(r.status, 0) << r.err;
   const Json j = Json::parse(r.out);
-  for (const char* figure : {"mse", "relmse", "mape", "relative_bias", "non_finite"}) EXPECT_EQ(j.at(figure), 0) << figure;
+  for (const char* figure : {"mse", "relmse", "mape", "relative_bias", "non_finite"})
+    EXPECT_EQ(j.at(figure), 0) << figure;
   EXPECT_EQ(j.at("flip").at("mean"), 0);
   EXPECT_EQ(j.at("pixels"), 32 * 24);
 }

@@ -25,7 +25,9 @@ struct Ran {
   std::string out, err;
 };
 
-inline bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+inline bool has(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
 
 class Program : public testing::Test {
  protected:
@@ -36,7 +38,8 @@ class Program : public testing::Test {
   /// Runs `weir` with these words, as a shell splits them.
   Ran weir(const std::string& arguments) const {
     const std::string out = logs_.path() + "/out", err = logs_.path() + "/err";
-    const int status = std::system((std::string(WEIR_BINARY_DIR) + "/bin/weir " + arguments + " >" + out + " 2>" + err).c_str());
+    const int status =
+        std::system((std::string(WEIR_BINARY_DIR) + "/bin/weir " + arguments + " >" + out + " 2>" + err).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
   }
   /// Bad input: exit status 2, the words on stderr, no output and no file.

@@ -68,8 +68,9 @@ TEST_F(Program, Scenes) {
   expectRefused(start + bad.write("noise.glb", "glTF\2\0\0\0 and then nothing"), "noise.glb");
   expectRefused(start + bad.write("empty.gltf", ""), "empty.gltf");
   expectRefused(start + bad.write("list.gltf", "[1, 2, 3]"), "list.gltf");
-  expectRefused(start + bad.write("needs.gltf", R"({"asset": {"version": "2.0"}, "extensionsRequired": ["EXT_wishes"]})"),
-                "EXT_wishes");
+  expectRefused(
+      start + bad.write("needs.gltf", R"({"asset": {"version": "2.0"}, "extensionsRequired": ["EXT_wishes"]})"),
+      "EXT_wishes");
   expectRefused("scene " + bad.path() + "/cut.glb --json", "cut.glb");
 }
 
@@ -82,7 +83,8 @@ TEST_F(Program, GraphsThatCanNotBeRead) {
 }
 
 TEST_F(Program, SixFaultsInOneFileAreSixDiagnostics) {
-  // An unknown key, a misspelt pass, a misspelt port, a cycle, a misspelt parameter, a bad value: where they stand and what was meant.
+  // An unknown key, a misspelt pass, a misspelt port, a cycle, a misspelt parameter, a bad value: where they stand and
+  // what was meant.
   const struct {
     const char *place, *words;
   } expected[] = {{":3: nmae", "nearest: 'name'"},

@@ -10,17 +10,21 @@ namespace {
 
 using Json = nlohmann::json;
 
-bool same(const image::Picture& a, const image::Picture& b) { return a.rgba == b.rgba; }
+bool same(const image::Picture& a, const image::Picture& b) {
+  return a.rgba == b.rgba;
+}
 
 /// Largest difference relative to the first picture's mean.
 double apart(const image::Picture& a, const image::Picture& b) {
   double most = 0;
-  for (size_t i = 0; i < a.rgba.size() && i < b.rgba.size(); ++i) most = std::max(most, std::abs(double(a.rgba[i]) - b.rgba[i]));
+  for (size_t i = 0; i < a.rgba.size() && i < b.rgba.size(); ++i)
+    most = std::max(most, std::abs(double(a.rgba[i]) - b.rgba[i]));
   return a.rgba.size() == b.rgba.size() ? most / meanOf(a) : 1e30;
 }
 
 TEST_F(Program, HeadersSayWhatThePictureShows) {
-  const Ran r = render(restir, points, "--frames 3 --average 2 --seed 7 --set spatial.radius=12 --out radiance=" + file("a.exr"));
+  const Ran r =
+      render(restir, points, "--frames 3 --average 2 --seed 7 --set spatial.radius=12 --out radiance=" + file("a.exr"));
   ASSERT_EQ(r.status, 0) << r.err;
   EXPECT_TRUE(has(r.out, "a.exr"));
   const image::Picture p = image::readExr(file("a.exr"));
@@ -49,7 +53,8 @@ TEST_F(Program, SeedsDecideThePicture) {
 }
 
 TEST_F(Program, FramesAreNumberedAndAveraged) {
-  const image::Picture one = radiance(allLights, cornell, "--first-frame 1"), two = radiance(allLights, cornell, "--first-frame 2");
+  const image::Picture one = radiance(allLights, cornell, "--first-frame 1"),
+                       two = radiance(allLights, cornell, "--first-frame 2");
   EXPECT_FALSE(same(one, two));
   // Without history a frame is the same wherever the sequence begins.
   EXPECT_TRUE(same(two, radiance(allLights, cornell, "--frames 3")));
@@ -61,21 +66,25 @@ TEST_F(Program, FramesAreNumberedAndAveraged) {
 TEST_F(Program, RestartsAreIndependentSequences) {
   // Two restarts of a graph with history, put together from two runs with the restarts' seeds.
   const std::string frames = "--frames 2 ";
-  const image::Picture first = radiance(restir, cornell, frames + "--seed " + std::to_string(render::restartSeed(3, 0)));
-  const image::Picture second = radiance(restir, cornell, frames + "--seed " + std::to_string(render::restartSeed(3, 1)));
-  const image::Picture both = radiance(restir, cornell, frames + "--seed 3 --restarts 2 --stderr radiance=" + file("e.exr"));
+  const image::Picture first =
+      radiance(restir, cornell, frames + "--seed " + std::to_string(render::restartSeed(3, 0)));
+  const image::Picture second =
+      radiance(restir, cornell, frames + "--seed " + std::to_string(render::restartSeed(3, 1)));
+  const image::Picture both =
+      radiance(restir, cornell, frames + "--seed 3 --restarts 2 --stderr radiance=" + file("e.exr"));
   const image::Picture error = image::readExr(file("e.exr"));
   image::Picture mean = first, expected = first;
   for (size_t i = 0; i < mean.rgba.size(); ++i) {
     mean.rgba[i] = 0.5f * (first.rgba[i] + second.rgba[i]);
-    expected.rgba[i] = i % 4 == 3 ? error.rgba[i] : 0.5f * std::abs(first.rgba[i] - second.rgba[i]);  // s/√2 of two values
+    expected.rgba[i] =
+        i % 4 == 3 ? error.rgba[i] : 0.5f * std::abs(first.rgba[i] - second.rgba[i]);  // s/√2 of two values
   }
   EXPECT_LT(apart(mean, both), 1e-5);
   EXPECT_LT(apart(expected, error), 1e-4);
 }
 
-// The standard error falls with the root of the number of restarts, and says how far two means lie apart. Sampling errors of the
-// two figures are about 2 % and 5 %; the bounds are five times as wide.
+// The standard error falls with the root of the number of restarts, and says how far two means lie apart. Sampling
+// errors of the two figures are about 2 % and 5 %; the bounds are five times as wide.
 TEST_F(Program, StandardErrorsAreTrue) {
   const auto run = [&](const std::string& more, const std::string& name) {
     radiance(allLights, cornell, more + " --stderr radiance=" + file(name + "-e.exr"), name + ".exr");
@@ -130,7 +139,8 @@ TEST_F(Program, LightsAndCameras) {
 }
 
 TEST_F(Program, BothBackEndsMakeThePicture) {
-  const image::Picture a = radiance(allLights, cornell, "--trace pipeline"), b = radiance(allLights, cornell, "--trace query");
+  const image::Picture a = radiance(allLights, cornell, "--trace pipeline"),
+                       b = radiance(allLights, cornell, "--trace query");
   EXPECT_NEAR(meanOf(a), meanOf(b), 1e-3 * meanOf(a));
 }
 
@@ -156,7 +166,8 @@ TEST_F(Program, RasterTakesThePlaceOfRayTraced) {
 }
 
 TEST_F(Program, StatisticsAreComplete) {
-  ASSERT_EQ(render(restir, points, "--frames 6 --stats " + file("s.json") + " --out radiance=" + file("a.exr")).status, 0);
+  ASSERT_EQ(render(restir, points, "--frames 6 --stats " + file("s.json") + " --out radiance=" + file("a.exr")).status,
+            0);
   const Json j = Json::parse(read(file("s.json")));
   EXPECT_EQ(j.at("frames"), 6);
   EXPECT_EQ(j.at("size"), Json({32, 24}));
@@ -168,7 +179,8 @@ TEST_F(Program, StatisticsAreComplete) {
     EXPECT_GE(pass.at("gpu_ms").at("p99").get<double>(), pass.at("gpu_ms").at("median").get<double>());
   }
   EXPECT_GT(j.at("frame").at("gpu_ms").at("median").get<double>(), 0.0);
-  for (const char* bytes : {"transient_bytes", "history_bytes", "scene_bytes"}) EXPECT_GT(j.at("memory").at(bytes), 0) << bytes;
+  for (const char* bytes : {"transient_bytes", "history_bytes", "scene_bytes"})
+    EXPECT_GT(j.at("memory").at(bytes), 0) << bytes;
   // One camera ray and at least one shadow ray for most pixels.
   EXPECT_GT(j.at("rays").get<uint64_t>(), 32u * 24);
 }

@@ -31,7 +31,8 @@ TEST(Alpha, MasksAgreeWithTheTexture) {
       }
       const glm::dvec3 d = oracleDirection(camera, glm::dvec2(x, y) + 0.5, frame.width, frame.height);
       const Tolerance textured{.root = 0.02};
-      if (const std::string said = difference(frame.at(x, y), oracle, hit, d, textured); !said.empty() && ++wrong <= 5) {
+      if (const std::string said = difference(frame.at(x, y), oracle, hit, d, textured);
+          !said.empty() && ++wrong <= 5) {
         ADD_FAILURE() << "pixel " << x << ", " << y << ": " << said;
       }
       const auto all = oracle.crossings(camera.eye, d);
@@ -60,7 +61,8 @@ scene::Scene layers(float nearAlpha, float farAlpha) {
   return b.scene;
 }
 
-// Shares of 64² pixels × 16 frames. Bounds are 5 σ of a binomial: false alarm 6e-7 each, and the numbers are the same in every run.
+// Shares of 64² pixels × 16 frames. Bounds are 5 σ of a binomial: false alarm 6e-7 each, and the numbers are the same
+// in every run.
 TEST(Alpha, BlendCoversAsOftenAsItsAlphaSays) {
   for (const char* type : {"gbuffer.RayTraced", "gbuffer.Raster"}) {
     constexpr uint32_t kSide = 64, kFrames = 16;

@@ -54,7 +54,9 @@ inline GFrame readFrame(PassTest& t, uint32_t width, uint32_t height) {
   return frame;
 }
 
-inline glm::dvec2 jitterPlace(glm::uvec2 jitter) { return (glm::dvec2(jitter) + 0.5) / 255.0; }
+inline glm::dvec2 jitterPlace(glm::uvec2 jitter) {
+  return (glm::dvec2(jitter) + 0.5) / 255.0;
+}
 
 struct Tolerance {
   double distance = 2e-5;  ///< relative
@@ -64,8 +66,8 @@ struct Tolerance {
 };
 
 /// Empty when the pixel shows this hit; else what differs.
-inline std::string difference(const GPixel& p, const RayOracle& oracle, const OracleHit& hit, const glm::dvec3& direction,
-                              const Tolerance& tolerance) {
+inline std::string difference(const GPixel& p, const RayOracle& oracle, const OracleHit& hit,
+                              const glm::dvec3& direction, const Tolerance& tolerance) {
   if (!hit) return p.distance == 0.0 && p.emission == glm::dvec4(0.0) ? "" : "a surface where there is none";
   if (!(std::abs(p.distance - hit.distance) <= tolerance.distance * hit.distance)) {
     return "distance " + std::to_string(p.distance) + " instead of " + std::to_string(hit.distance);
@@ -84,8 +86,8 @@ inline std::string difference(const GPixel& p, const RayOracle& oracle, const Or
   return "";
 }
 
-/// Every pixel shows what its ray meets. Where it doesn't, it must show what a ray a thousandth of a pixel beside it meets (an edge
-/// runs through the pixel's centre), and such pixels must be few.
+/// Every pixel shows what its ray meets. Where it doesn't, it must show what a ray a thousandth of a pixel beside it
+/// meets (an edge runs through the pixel's centre), and such pixels must be few.
 inline void expectOracle(const GFrame& frame, const RayOracle& oracle, const scene::Camera& camera,
                          const Tolerance& tolerance = {}, double edges = 0.01) {
   // Misses keep no place in their pixel; it is the same for all pixels of a frame.
@@ -118,6 +120,8 @@ inline void expectOracle(const GFrame& frame, const RayOracle& oracle, const sce
   EXPECT_LE(static_cast<double>(onEdge), edges * static_cast<double>(frame.pixels.size()) + 1) << "pixels on edges";
 }
 
-inline scene::Scene own(const std::string& name) { return scene::importGltf(sourcePath("scenes/" + name)); }
+inline scene::Scene own(const std::string& name) {
+  return scene::importGltf(sourcePath("scenes/" + name));
+}
 
 }  // namespace weir::test

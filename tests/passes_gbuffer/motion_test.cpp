@@ -5,7 +5,8 @@ namespace weir::test {
 namespace {
 
 /// Runs `before`, then `now`, and compares the second frame's motion.
-void expectMotion(const scene::Scene& scene, const scene::Camera& before, const scene::Camera& now, uint32_t w, uint32_t h) {
+void expectMotion(const scene::Scene& scene, const scene::Camera& before, const scene::Camera& now, uint32_t w,
+                  uint32_t h) {
   PassTest t("gbuffer.RayTraced");
   t.size(w, h).scene(scene).camera(before);
   t.run();
@@ -18,13 +19,16 @@ void expectMotion(const scene::Scene& scene, const scene::Camera& before, const 
       const GPixel& p = frame.at(x, y);
       const glm::dvec2 point = glm::dvec2(x, y) + 0.5;
       const glm::dvec3 d = oracleDirection(now, point, w, h);
-      // Of the surface that the pixel shows, whichever side of an edge that is; of the infinitely far where there is none.
+      // Of the surface that the pixel shows, whichever side of an edge that is; of the infinitely far where there is
+      // none.
       const glm::dvec3 shown = p.distance > 0 ? glm::dvec3(now.eye) + p.distance * d : glm::dvec3(before.eye) + d;
       const glm::dvec3 was = oracleProject(before, shown, w, h);
       const glm::dvec2 expected = glm::dvec2(was) - point;
       // Close to the old camera's plane a vector of thousands of pixels has fewer digits to spare.
       const double allowed = 0.01 + 1e-5 * glm::length(expected);
-      const bool fine = was.z > 1e-4 ? glm::length(p.motion - expected) <= allowed : was.z < -1e-4 ? p.motion.x > 1e30 : true;
+      const bool fine = was.z > 1e-4    ? glm::length(p.motion - expected) <= allowed
+                        : was.z < -1e-4 ? p.motion.x > 1e30
+                                        : true;
       if (!fine && ++wrong <= 5) {
         ADD_FAILURE() << "pixel " << x << ", " << y << ": " << p.motion.x << ", " << p.motion.y << " instead of "
                       << expected.x << ", " << expected.y;
@@ -65,8 +69,8 @@ TEST(Motion, IsZeroAfterACut) {
   for (const GPixel& p : readFrame(t, 16, 16).pixels) EXPECT_LT(glm::length(p.motion), 1e-3);
 }
 
-// One place for all pixels of a frame, another in the next, uniform over the pixel's box: the mean of 64 frames within 5 σ of its
-// middle (false alarm 6e-7 an axis; the places are the same in every run).
+// One place for all pixels of a frame, another in the next, uniform over the pixel's box: the mean of 64 frames within
+// 5 σ of its middle (false alarm 6e-7 an axis; the places are the same in every run).
 TEST(Jitter, MovesTheSampleAndNothingElse) {
   const scene::Scene scene = own("materials.glb");
   PassTest t("gbuffer.RayTraced");

@@ -1,5 +1,5 @@
-// gbuffer.Raster against gbuffer.RayTraced: the same surfaces everywhere but at silhouettes, where a ray and a rasteriser may round
-// to different sides. Raster runs on a device whose ray tracing is hidden: it must not need any.
+// gbuffer.Raster against gbuffer.RayTraced: the same surfaces everywhere but at silhouettes, where a ray and a
+// rasteriser may round to different sides. Raster runs on a device whose ray tracing is hidden: it must not need any.
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -30,8 +30,9 @@ GFrame run(const std::string& type, const View& v) {
 bool continuous(const GPixel& a, const GPixel& b) {
   if ((a.distance > 0) != (b.distance > 0)) return false;
   if (a.distance == 0) return true;
-  return std::abs(a.distance - b.distance) < 0.05 * a.distance && glm::dot(a.geometricNormal, b.geometricNormal) > 0.95 &&
-         std::abs(a.roughness - b.roughness) < 0.2 && glm::length(a.diffuseRoot - b.diffuseRoot) < 0.5;
+  return std::abs(a.distance - b.distance) < 0.05 * a.distance &&
+         glm::dot(a.geometricNormal, b.geometricNormal) > 0.95 && std::abs(a.roughness - b.roughness) < 0.2 &&
+         glm::length(a.diffuseRoot - b.diffuseRoot) < 0.5;
 }
 
 bool silhouette(const GFrame& f, uint32_t x, uint32_t y) {
@@ -77,7 +78,8 @@ void expectSame(const View& v, double mostSilhouettes, double detail = 1) {
   }
   EXPECT_EQ(wrong, 0u) << "of " << inside << " pixels";
   EXPECT_LT(static_cast<double>(edge), mostSilhouettes * v.width * v.height);
-  EXPECT_LT(static_cast<double>(onEdge), 0.05 * static_cast<double>(edge) + 2) << "silhouette pixels that differ, of " << edge;
+  EXPECT_LT(static_cast<double>(onEdge), 0.05 * static_cast<double>(edge) + 2)
+      << "silhouette pixels that differ, of " << edge;
 }
 
 TEST(Raster, OwnScenes) {
@@ -110,7 +112,8 @@ TEST(Raster, Sponza) {
   const std::string folder = given != nullptr ? given : WEIR_SOURCE_DIR "/../shared/scenes";
   const std::string file = folder + "/sponza/sponza.glb";
   if (!std::filesystem::exists(file)) {
-    std::cerr << "\n*** NO SCENE " << file << ": RASTER AGAINST TRACED ON SPONZA IS NOT TESTED. SET WEIR_SCENES. ***\n\n";
+    std::cerr << "\n*** NO SCENE " << file
+              << ": RASTER AGAINST TRACED ON SPONZA IS NOT TESTED. SET WEIR_SCENES. ***\n\n";
     GTEST_SKIP() << "no " << file;
   }
   expectSame({scene::importGltf(file), lookAt({-8, 4, -0.5f}, {0, 3.5f, -0.2f}, 70), 160, 90, true, {}}, 0.7, 10);

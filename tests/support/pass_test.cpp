@@ -49,7 +49,9 @@ struct PassTest::Machine {
       : device(std::move(d)), guard(*device), registry({std::filesystem::path(WEIR_BINARY_DIR) / "bin"}) {}
 };
 
-std::string sourcePath(const std::string& relative) { return std::string(WEIR_SOURCE_DIR) + "/" + relative; }
+std::string sourcePath(const std::string& relative) {
+  return std::string(WEIR_SOURCE_DIR) + "/" + relative;
+}
 
 PassTest::PassTest(std::string type) : type_(std::move(type)) {}
 PassTest::~PassTest() = default;
@@ -67,7 +69,8 @@ PassTest& PassTest::limits(const scene::PrepareLimits& limits) {
   limits_ = limits;
   return *this;
 }
-PassTest& PassTest::plugin(const std::string& name, std::vector<WeirPassEntry> passes, const std::string& shaderFolder) {
+PassTest& PassTest::plugin(const std::string& name, std::vector<WeirPassEntry> passes,
+                           const std::string& shaderFolder) {
   plugins_.push_back({name, shaderFolder, std::move(passes)});
   return *this;
 }
@@ -108,7 +111,9 @@ PassTest& PassTest::seed(uint32_t seed) {
   return *this;
 }
 
-void PassTest::resetHistory() { executor().resetHistory(); }
+void PassTest::resetHistory() {
+  executor().resetHistory();
+}
 
 const scene::PreparedScene& PassTest::prepared() {
   build();
@@ -130,7 +135,8 @@ std::string PassTest::json() const {
     outputs += fmt::format("\"source-{0}\": \"source.{0}\", ", input.name);
   }
   for (const PortDescription& output : sourcePorts.pass->outputs) {
-    outputs += fmt::format("{0}\"{1}\": \"it.{1}\"", &output == &sourcePorts.pass->outputs.front() ? "" : ", ", output.name);
+    outputs +=
+        fmt::format("{0}\"{1}\": \"it.{1}\"", &output == &sourcePorts.pass->outputs.front() ? "" : ", ", output.name);
   }
   return fmt::format(R"({{"version": 1, "name": "pass test", "passes": {{
     "source": {{"type": "test.Source"}}, "it": {{"type": "{}", "inputs": {{{}}}}}}}, "outputs": {{{}}}}})",
@@ -168,7 +174,8 @@ void PassTest::build() {
   m.scene = std::make_unique<scene::SceneGpu>(*device, scene_, m.prepared, traces);
   execute::ExecutorOptions options;
   options.backend = backend_ ? *backend_ : trace::chooseBackend("auto", *device);
-  m.executor = std::make_unique<execute::Executor>(*device, m.compiler, m.registry, *m.scene, std::move(compiled), options);
+  m.executor =
+      std::make_unique<execute::Executor>(*device, m.compiler, m.registry, *m.scene, std::move(compiled), options);
   // Unfilled inputs hold zeros, not what the memory held before.
   for (const PortDescription& input : sourcePorts.pass->inputs) {
     if (std::ranges::count(open_, input.name) != 0 || feedBack_.contains(input.name)) continue;
@@ -182,7 +189,8 @@ void PassTest::build() {
 PassTest& PassTest::inputBytes(const std::string& port, std::span<const std::byte> bytes) {
   if (machine_) {
     const size_t size = machine_->executor->readResource("source." + port).size();
-    if (size != bytes.size()) throw InputError(fmt::format("{}: {} bytes given, {} expected", port, bytes.size(), size));
+    if (size != bytes.size())
+      throw InputError(fmt::format("{}: {} bytes given, {} expected", port, bytes.size(), size));
     machine_->executor->writeResource("source." + port, bytes);
   } else {
     pending_[port] = {bytes.begin(), bytes.end()};
@@ -190,7 +198,9 @@ PassTest& PassTest::inputBytes(const std::string& port, std::span<const std::byt
   return *this;
 }
 
-std::vector<std::byte> PassTest::outputBytes(const std::string& port) { return executor().readResource("it." + port); }
+std::vector<std::byte> PassTest::outputBytes(const std::string& port) {
+  return executor().readResource("it." + port);
+}
 
 void PassTest::run(uint32_t frames) {
   build();

@@ -28,7 +28,7 @@ class PassTest {
 
   // Before the first run().
   PassTest& size(uint32_t width, uint32_t height);
-  PassTest& scene(scene::Scene scene);                 ///< default: an empty one
+  PassTest& scene(scene::Scene scene);                   ///< default: an empty one
   PassTest& limits(const scene::PrepareLimits& limits);  ///< which meshes stay instances; default: prepareScene's own
   /// Passes of the test's own, as a plugin would bring them.
   PassTest& plugin(const std::string& name, std::vector<WeirPassEntry> passes, const std::string& shaderFolder);

@@ -8,7 +8,9 @@
 namespace weir::test {
 namespace {
 
-double srgbToLinear(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+double srgbToLinear(double c) {
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
 
 /// Index of a texel after the sampler's wrap mode.
 int64_t wrapped(int64_t i, int64_t size, scene::Wrap wrap) {
@@ -126,7 +128,8 @@ glm::dvec4 RayOracle::texture(int32_t index, glm::dvec2 uv) const {
   const scene::PreparedTexture& t = prepared_.textures[index];
   const scene::Image& image = scene_.images[t.image];
   const auto texel = [&](int64_t x, int64_t y) {
-    const auto at = static_cast<size_t>(wrapped(y, image.height, t.wrapT) * image.width + wrapped(x, image.width, t.wrapS));
+    const auto at =
+        static_cast<size_t>(wrapped(y, image.height, t.wrapT) * image.width + wrapped(x, image.width, t.wrapS));
     glm::dvec4 c;
     for (int k = 0; k < 4; ++k) c[k] = image.rgba[4 * at + static_cast<size_t>(k)] / 255.0;
     if (t.srgb) {
@@ -140,7 +143,8 @@ glm::dvec4 RayOracle::texture(int32_t index, glm::dvec2 uv) const {
   }
   const glm::dvec2 base = glm::floor(p - 0.5), f = p - 0.5 - base;
   const auto x = static_cast<int64_t>(base.x), y = static_cast<int64_t>(base.y);
-  return glm::mix(glm::mix(texel(x, y), texel(x + 1, y), f.x), glm::mix(texel(x, y + 1), texel(x + 1, y + 1), f.x), f.y);
+  return glm::mix(glm::mix(texel(x, y), texel(x + 1, y), f.x), glm::mix(texel(x, y + 1), texel(x + 1, y + 1), f.x),
+                  f.y);
 }
 
 double RayOracle::coverage(const OracleHit& hit) const {

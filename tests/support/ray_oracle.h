@@ -1,5 +1,6 @@
-// What a ray meets and what is there, in double precision over the prepared triangles, by brute force and from the papers: Möller and
-// Trumbore 1997, glTF 2.0's material model and texture lookup. Slow, and shares no code with the shaders.
+// What a ray meets and what is there, in double precision over the prepared triangles, by brute force and from the
+// papers: Möller and Trumbore 1997, glTF 2.0's material model and texture lookup. Slow, and shares no code with the
+// shaders.
 #pragma once
 
 #include <weir/scene/prepared.h>

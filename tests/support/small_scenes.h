@@ -101,9 +101,12 @@ inline uint32_t hashOf(uint32_t x) {
   return x ^ (x >> 16);
 }
 /// Uniform in [0, 1).
-inline double uniformOf(uint32_t x) { return hashOf(x) / 4294967296.0; }
+inline double uniformOf(uint32_t x) {
+  return hashOf(x) / 4294967296.0;
+}
 
-/// Everything times a factor: lights that fall off with the square of the distance grow with it, so pictures stay alike.
+/// Everything times a factor: lights that fall off with the square of the distance grow with it, so pictures stay
+/// alike.
 inline scene::Scene scaled(scene::Scene scene, float factor) {
   for (scene::Instance& i : scene.instances) {
     for (int c = 0; c < 4; ++c) i.toWorld[c] *= glm::vec4(glm::vec3(factor), 1.0f);

@@ -52,9 +52,8 @@ struct World {
 /// Layers of every alpha mode, two of them textured.
 scene::Scene veils() {
   Builder b;
-  const int soft = b.texture(16, 16, [](uint32_t x, uint32_t y) {
-    return glm::u8vec4(255, 255, 255, hashOf(x + 16 * y) & 255);
-  });
+  const int soft =
+      b.texture(16, 16, [](uint32_t x, uint32_t y) { return glm::u8vec4(255, 255, 255, hashOf(x + 16 * y) & 255); });
   for (uint32_t i = 0; i < 6; ++i) {
     scene::Material m;
     m.baseColor.a = 0.15f + 0.1f * static_cast<float>(i);
@@ -88,8 +87,9 @@ TEST(Trace, BackEndsAgree) {
     size_t closest = 0, seen = 0, shadows = 0, hits = 0, partial = 0;
     for (size_t i = 0; i < a.found.size(); ++i) {
       const Found &p = a.found[i], &q = b.found[i];
-      const bool same = p.triangle == q.triangle && (p.triangle == ~0u || (p.instance == q.instance &&
-                        std::abs(p.u - q.u) < 1e-5f && std::abs(p.v - q.v) < 1e-5f));
+      const bool same = p.triangle == q.triangle &&
+                        (p.triangle == ~0u ||
+                         (p.instance == q.instance && std::abs(p.u - q.u) < 1e-5f && std::abs(p.v - q.v) < 1e-5f));
       closest += !same;
       seen += p.cameraTriangle != q.cameraTriangle;
       shadows += std::abs(p.transmittance - q.transmittance) > 1e-5f;
@@ -107,7 +107,8 @@ TEST(Trace, BackEndsAgree) {
   }
 }
 
-// Against the oracle; where a segment grazes an edge of a triangle or of a texel, rounding decides, so that one in 500 may differ.
+// Against the oracle; where a segment grazes an edge of a triangle or of a texel, rounding decides, so that one in 500
+// may differ.
 TEST(Trace, BothAgreeWithDoublePrecision) {
   for (const auto backend : {trace::Backend::Pipeline, trace::Backend::Query}) {
     SCOPED_TRACE(trace::backendName(backend));
@@ -121,7 +122,8 @@ TEST(Trace, BothAgreeWithDoublePrecision) {
       const Found& f = a.found[i];
       const glm::dvec3 o(s.ox, s.oy, s.oz), d(s.dx, s.dy, s.dz);
       const auto all = oracle.crossings(o, d, 1.0);
-      // What stops a ray is a coin for BLEND: whatever was found must be there, and everything before it must be able to let go.
+      // What stops a ray is a coin for BLEND: whatever was found must be there, and everything before it must be able
+      // to let go.
       bool explained = f.triangle == ~0u, before = true, explainedSeen = f.cameraTriangle == ~0u, beforeSeen = true;
       for (const OracleHit& hit : all) {
         const double coverage = oracle.coverage(hit);

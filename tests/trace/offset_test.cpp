@@ -1,5 +1,6 @@
-// No surface shadows itself and no light its own samples, at any scale and distance from the origin, and nothing leaks through a
-// wall without thickness. Rays are deterministic; the bound of 1e-5 is the project's, over half a million rays or more a case.
+// No surface shadows itself and no light its own samples, at any scale and distance from the origin, and nothing leaks
+// through a wall without thickness. Rays are deterministic; the bound of 1e-5 is the project's, over half a million
+// rays or more a case.
 #include <gtest/gtest.h>
 #include <weir/scene/import.h>
 
@@ -53,7 +54,8 @@ scene::Scene ball() {
   return b.scene;
 }
 
-/// Eight faces that stay convex when their corners are rounded: what is blocked here is blocked by nothing but arithmetic.
+/// Eight faces that stay convex when their corners are rounded: what is blocked here is blocked by nothing but
+/// arithmetic.
 scene::Scene octahedron() {
   Builder b;
   scene::Primitive p;
@@ -77,13 +79,17 @@ const float kScales[] = {1e-4f, 1e-2f, 1.0f, 1e3f, 1e6f};
 TEST(Offset, ConvexSurfacesDoNotShadowThemselves) {
   for (const float scale : kScales) {
     SCOPED_TRACE(scale);
-    expectFew(leave(scaled(ball(), scale), moved(lookAt({0.4f, 0.9f, 2.6f}, {0.3f, 0.2f, 0}, 50), scale), "sky", 160, 48), 300'000);
+    expectFew(
+        leave(scaled(ball(), scale), moved(lookAt({0.4f, 0.9f, 2.6f}, {0.3f, 0.2f, 0}, 50), scale), "sky", 160, 48),
+        300'000);
   }
 }
 
 TEST(Offset, FarFromTheOrigin) {
   const glm::vec3 far(300, -200, 500);
-  expectFew(leave(shifted(octahedron(), far), moved(lookAt({0.4f, 0.9f, 2.6f}, {0.3f, 0.2f, 0}, 50), 1, far), "sky", 160, 128), 300'000);
+  expectFew(leave(shifted(octahedron(), far), moved(lookAt({0.4f, 0.9f, 2.6f}, {0.3f, 0.2f, 0}, 50), 1, far), "sky",
+                  160, 128),
+            300'000);
   // A small thing seen from a long way off: the distance's own rounding moves the point.
   expectFew(leave(octahedron(), lookAt({300, 200, 500}, {0.3f, 0.2f, 0}, 0.2f), "sky", 160, 128), 300'000);
 }
@@ -103,11 +109,13 @@ TEST(Offset, LightsDoNotShadowTheirSamples) {
   b.add(quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}));
   b.add(quad({-1, 2, -1}, {1, 2.3f, -1}, {1.2f, 1.7f, 1}, {-1, 1.4f, 1}, b.material(lamp)));
   b.scene.lights.push_back({"point", scene::LightKind::Point, glm::vec3(1), {0.5f, 1.0f, 0.2f}});
-  b.scene.lights.push_back({"sun", scene::LightKind::Directional, glm::vec3(1), {}, glm::normalize(glm::vec3(1, -0.4f, 0))});
+  b.scene.lights.push_back(
+      {"sun", scene::LightKind::Directional, glm::vec3(1), {}, glm::normalize(glm::vec3(1, -0.4f, 0))});
   for (const float scale : kScales) {
     SCOPED_TRACE(scale);
     // The sun comes in under the lamp's edge only where it does: look at the side that it reaches.
-    expectFew(leave(scaled(b.scene, scale), moved(lookAt({-2.6f, 0.5f, 0}, {-3, 0, 0}, 50), scale), "lights", 128, 64), 300'000);
+    expectFew(leave(scaled(b.scene, scale), moved(lookAt({-2.6f, 0.5f, 0}, {-3, 0, 0}, 50), scale), "lights", 128, 64),
+              300'000);
   }
 }
 
@@ -125,7 +133,8 @@ TEST(Offset, WallsWithoutThicknessDoNotLeak) {
   for (scene::Instance& i : b.scene.instances) i.toWorld = turn;
   for (const float scale : kScales) {
     SCOPED_TRACE(scale);
-    expectFew(leave(scaled(b.scene, scale), moved(lookAt({0, 0.1f, 0}, {1, -0.6f, 0.7f}, 100), scale), "leak", 160, 32), 800'000);
+    expectFew(leave(scaled(b.scene, scale), moved(lookAt({0, 0.1f, 0}, {1, -0.6f, 0.7f}, 100), scale), "leak", 160, 32),
+              800'000);
   }
 }
 

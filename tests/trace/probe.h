@@ -101,7 +101,8 @@ class Leave final : public Pass {
 
 /// A test of one of them.
 inline PassTest& withProbes(PassTest& t) {
-  return t.plugin("trace_test", {passEntry<Probe>("Probe"), passEntry<Leave>("Leave")}, sourcePath("tests/trace/shaders"));
+  return t.plugin("trace_test", {passEntry<Probe>("Probe"), passEntry<Leave>("Leave")},
+                  sourcePath("tests/trace/shaders"));
 }
 
 }  // namespace weir::test
