@@ -111,18 +111,17 @@ scene::Scene fourPoints() {
       {{{0, 0, 1}, {1, 1, 1}}, {{1, 0, 1}, {5, 1, 1}}, {{-1, 1, 2}, {2, 9, 2}}, {{2, 2, 0.5f}, {1, 1, 8}}});
 }
 
-// With M candidates i with probability p, the chosen light's distribution is known exactly for M = 1 (p itself) and M =
-// 2, and is p̂ / Σ p̂ to within 1/M for many. Chance of a false alarm: 1e-4 for each of the three.
+// With M candidates of probability p (a share of them uniform, the others by power), the chosen light's distribution is
+// known exactly for M = 1 (p itself) and M = 2, and is p̂ / Σ p̂ to within 1/M for many. Chance of a false alarm: 1e-4
+// for each of the five.
 TEST(RestirInitial, ChosenLightsFollowResampling) {
   const View view = onePointView(64, 64);
-  for (const int candidates : {1, 2, 1024}) {
-    SCOPED_TRACE(candidates);
+  for (const auto& [candidates, share] : {std::pair{1, 0.1}, {1, 0.0}, {1, 1.0}, {2, 0.25}, {1024, 0.1}}) {
+    SCOPED_TRACE(testing::Message() << candidates << " candidates, uniform share " << share);
     PassTest t("restir_di.Initial");
     show(t, view, fourPoints());
-    t.param("candidates", std::to_string(candidates))
-        .param("visibility", "false")
-        .param("uniformShare", "0.25")
-        .seed(3);
+    t.param("candidates", std::to_string(candidates)).param("visibility", "false").seed(3);
+    t.param("uniformShare", std::to_string(share));
     const oracle::World world(t.prepared());
     const size_t n = world.lights().size();
     ASSERT_EQ(n, 4u);
@@ -134,7 +133,7 @@ TEST(RestirInitial, ChosenLightsFollowResampling) {
       source[i] = oracle::luminance(oracle::Vec(world.lights()[i].radiance));
       power += source[i];
     }
-    for (double& p : source) p = 0.75 * p / power + 0.25 / static_cast<double>(n);
+    for (double& p : source) p = (1.0 - share) * p / power + share / static_cast<double>(n);
     for (size_t i = 0; i < n; ++i) {
       if (candidates == 1) expected[i] = source[i];
       if (candidates == 1024) expected[i] = target[i] / targets;
