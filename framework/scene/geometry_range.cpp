@@ -2,6 +2,7 @@
 #include <weir/scene/packing.h>
 #include <weir/scene/spatial_sort.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace weir::scene {
@@ -54,6 +55,18 @@ uint32_t GeometryRange::addVertex(const glm::vec3& position, const glm::vec3& no
   return static_cast<uint32_t>(positions_.size() - 1);
 }
 
+void GeometryRange::addExtras(const Primitive& primitive, uint32_t i) {
+  if (scene_.traits.vertexColors) {
+    const glm::vec4 c = primitive.colors.empty() ? glm::vec4(1.0f) : primitive.colors[i];
+    const auto pack = [](float low, float high) {
+      const auto code = [](float v) { return static_cast<uint32_t>(std::clamp(v, 0.0f, 1.0f) * 65535.0f + 0.5f); };
+      return code(low) | (code(high) << 16);
+    };
+    colors_.push_back({pack(c.r, c.g), pack(c.b, c.a)});
+  }
+  if (scene_.traits.uvSets) uvs1_.push_back(primitive.uv1.empty() ? glm::vec2(0.0f) : primitive.uv1[i]);
+}
+
 void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform) {
   const glm::dmat3 linear(transform);
   const double det = glm::determinant(linear);
@@ -67,6 +80,13 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
   const bool wantsTangents = materials_[material].normalTexture >= 0;
   const bool givenTangents = smooth && primitive.tangents.size() == count;
   const auto uvOf = [&](uint32_t i) { return primitive.uv0.empty() ? glm::vec2(0.0f) : primitive.uv0[i]; };
+
+  // Tangents follow the coordinates at which the normal map is read.
+  const auto normalUv = [&](uint32_t i) {
+    if (!wantsTangents) return uvOf(i);
+    const PreparedTexture& map = scene_.textures[materials_[material].normalTexture];
+    return map.transform(map.uvSet == 0 ? uvOf(i) : primitive.uv1.empty() ? glm::vec2(0.0f) : primitive.uv1[i]);
+  };
 
   // First one vertex each; splitting, where needed, adds more behind them. What ends up unused goes in finish().
   const uint32_t base = static_cast<uint32_t>(positions_.size());
@@ -84,6 +104,7 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
                  mirrors ? -primitive.tangents[i].w : primitive.tangents[i].w};
     }
     addVertex(position, normal, tangent, uvOf(i));
+    addExtras(primitive, i);
   }
 
   const bool split = !smooth || (wantsTangents && !givenTangents);
@@ -104,7 +125,7 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
     }
     if (split) {
       const glm::vec3 p[3] = {positions_[triangle.v[0]], positions_[triangle.v[1]], positions_[triangle.v[2]]};
-      const glm::vec2 uv[3] = {uvOf(local[0]), uvOf(local[1]), uvOf(local[2])};
+      const glm::vec2 uv[3] = {normalUv(local[0]), normalUv(local[1]), normalUv(local[2])};
       const glm::vec3 face =
           normaliseOr(glm::cross(glm::dvec3(p[1]) - glm::dvec3(p[0]), glm::dvec3(p[2]) - glm::dvec3(p[0])), {0, 0, 1});
       for (int k = 0; k < 3; ++k) {
@@ -118,7 +139,8 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
           at = splits[at].next;
         if (at == kNone) {
           at = static_cast<uint32_t>(splits.size());
-          splits.push_back({addVertex(p[k], normal, tangent, uv[k]), firstSplit[local[k]]});
+          splits.push_back({addVertex(p[k], normal, tangent, uvOf(local[k])), firstSplit[local[k]]});
+          addExtras(primitive, local[k]);
           firstSplit[local[k]] = at;
         }
         triangle.v[k] = splits[at].vertex;
@@ -152,6 +174,8 @@ void GeometryRange::finish(PreparedScene& scene) {
           now = static_cast<uint32_t>(scene.positions.size()) - base;
           scene.positions.push_back(positions_[v]);
           scene.vertices.push_back(vertices_[v]);
+          if (!colors_.empty()) scene.colors.push_back(colors_[v]);
+          if (!uvs1_.empty()) scene.uvs1.push_back(uvs1_[v]);
         }
         v = base + now;
       }
@@ -162,6 +186,8 @@ void GeometryRange::finish(PreparedScene& scene) {
   scene.droppedTriangles += dropped_;
   positions_.clear();
   vertices_.clear();
+  colors_.clear();
+  uvs1_.clear();
   triangles_.clear();
   dropped_ = 0;
 }

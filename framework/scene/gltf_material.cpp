@@ -54,7 +54,7 @@ void importImageNames(GltfImport& import) {
 void importTextures(GltfImport& import) {
   for (const auto& texture : import.model.textures) {
     Texture t;
-    t.image = texture.source;  // -1 when only an extension names an image
+    t.image = texture.source;         // -1 when only an extension names an image
     t.mipFilter = MipFilter::Linear;  // what glTF leaves to us without a sampler
     for (const char* extension : kOtherImageFormats)
       if (texture.extensions.contains(extension))
@@ -133,8 +133,8 @@ TextureSlot slotOf(GltfImport& import, const nlohmann::json& owner, const char* 
   return slot;
 }
 
-/// A primitive carries two sets of texture coordinates: the first two that a material's slots read. Slots are renumbered
-/// to those. Returns the file's numbers, -1: none.
+/// A primitive carries two sets of texture coordinates: the first two that a material's slots read. Slots are
+/// renumbered to those. Returns the file's numbers, -1: none.
 std::array<int, 2> settleUvSets(GltfImport& import, Material& material) {
   std::array<int, 2> sets = {-1, -1};
   for (TextureSlot* slot : material.slots()) {

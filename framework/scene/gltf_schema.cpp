@@ -96,11 +96,10 @@ const std::vector<Rule>& rootRules() {
   static const std::vector<Rule> specular = {number("specularFactor"), numbers("specularColorFactor", 3),
                                              object("specularTexture", textureInfo),
                                              object("specularColorTexture", textureInfo)};
-  static const std::vector<Rule> materialExtensions = {object("KHR_materials_emissive_strength", strength),
-                                                       object("KHR_materials_ior", ior),
-                                                       object("KHR_materials_pbrSpecularGlossiness", glossiness),
-                                                       object("KHR_materials_specular", specular),
-                                                       object("KHR_materials_unlit", nothing)};
+  static const std::vector<Rule> materialExtensions = {
+      object("KHR_materials_emissive_strength", strength), object("KHR_materials_ior", ior),
+      object("KHR_materials_pbrSpecularGlossiness", glossiness), object("KHR_materials_specular", specular),
+      object("KHR_materials_unlit", nothing)};
   static const std::vector<Rule> material = {object("pbrMetallicRoughness", metallic),
                                              object("normalTexture", textureInfo),
                                              object("occlusionTexture", textureInfo),

@@ -9,10 +9,14 @@
 namespace weir::scene {
 namespace {
 
-constexpr std::array<std::string_view, 8> kImplemented = {
-    "KHR_lights_punctual",   "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_specular", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_unlit",
-    "KHR_mesh_quantization", "KHR_texture_transform"};
+constexpr std::array<std::string_view, 8> kImplemented = {"KHR_lights_punctual",
+                                                          "KHR_materials_emissive_strength",
+                                                          "KHR_materials_ior",
+                                                          "KHR_materials_specular",
+                                                          "KHR_materials_pbrSpecularGlossiness",
+                                                          "KHR_materials_unlit",
+                                                          "KHR_mesh_quantization",
+                                                          "KHR_texture_transform"};
 
 bool implemented(const std::string& name) {
   return std::find(kImplemented.begin(), kImplemented.end(), name) != kImplemented.end();

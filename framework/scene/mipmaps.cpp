@@ -28,8 +28,7 @@ Taps tapsOf(uint32_t i, uint32_t side) {
   const uint32_t half = side / 2;
   if (side % 2 == 0) return {2 * i, 2, {0.5f, 0.5f, 0.0f}};
   const auto n = static_cast<float>(side);
-  return {2 * i, 3,
-          {static_cast<float>(half - i) / n, static_cast<float>(half) / n, static_cast<float>(i + 1) / n}};
+  return {2 * i, 3, {static_cast<float>(half - i) / n, static_cast<float>(half) / n, static_cast<float>(i + 1) / n}};
 }
 
 /// A level as floats, colours linear and, where they are weighted, multiplied by their weight.

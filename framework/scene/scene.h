@@ -65,10 +65,10 @@ struct Material {
   float roughness = 1.0f;  ///< of metallic-roughness only
   float glossiness = 1.0f;
   float ior = 1.5f;
-  float specular = 1.0f;            ///< KHR_materials_specular's specularFactor
-  glm::vec3 specularColor{1.0f};    ///< specularColorFactor, or the specular factor (F0) of specular-glossiness
-  TextureSlot specularTexture;      ///< its alpha scales `specular`
-  TextureSlot specularColorTexture; ///< scales specularColor; of specular-glossiness its alpha scales the glossiness
+  float specular = 1.0f;             ///< KHR_materials_specular's specularFactor
+  glm::vec3 specularColor{1.0f};     ///< specularColorFactor, or the specular factor (F0) of specular-glossiness
+  TextureSlot specularTexture;       ///< its alpha scales `specular`
+  TextureSlot specularColorTexture;  ///< scales specularColor; of specular-glossiness its alpha scales the glossiness
   /// emissiveFactor times KHR_materials_emissive_strength; radiance in nit, linear Rec.709.
   glm::vec3 emission{0.0f};
   float normalScale = 1.0f;
@@ -85,7 +85,9 @@ struct Material {
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
-  bool isEmissive() const { return emission.x > 0 || emission.y > 0 || emission.z > 0; }
+  bool isEmissive() const {
+    return model != MaterialModel::Unlit && (emission.x > 0 || emission.y > 0 || emission.z > 0);
+  }
 };
 
 /// Triangles of one material. Arrays of attributes that the file lacks are empty.
@@ -95,8 +97,8 @@ struct Primitive {
   std::vector<glm::vec4> tangents;  ///< xyz unit length, w = ±1
   std::vector<glm::vec2> uv0, uv1;  ///< uv1 only where a slot of the material reads it
   std::vector<glm::vec4> colors;    ///< COLOR_0, linear, 0 to 1; scales the base colour and its alpha
-  std::vector<uint32_t> indices;  ///< three a triangle, each below positions.size()
-  int material = -1;              ///< -1: glTF's default material
+  std::vector<uint32_t> indices;    ///< three a triangle, each below positions.size()
+  int material = -1;                ///< -1: glTF's default material
 };
 
 struct Mesh {
