@@ -12,7 +12,8 @@ GFrame trace(scene::Scene scene, const scene::Camera& camera, uint32_t width, ui
   t.size(width, height).scene(std::move(scene)).limits(limits).camera(camera);
   t.run();
   const GFrame frame = readFrame(t, width, height);
-  const RayOracle oracle(t.sourceScene(), t.prepared());
+  RayOracle oracle(t.sourceScene(), t.prepared());
+  oracle.seeThrough(camera, width, height, LevelRule::Cone);
   expectOracle(frame, oracle, camera, tolerance);
   return frame;
 }
