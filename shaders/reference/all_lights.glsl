@@ -51,7 +51,7 @@ void run(uvec2 pixel) {
         color += arriving(surface, evaluatePunctual(light, surface.position));
         continue;
       }
-      const SphericalTriangle t = sphericalTriangle(light.position - surface.position, light.a, light.b);
+      const SphericalTriangle t = sphericalTriangle(light.position - surface.position, light.a, light.b, surface.error);
       if (!(t.solidAngle > 0.0)) continue;
       vec3 sum = vec3(0.0);
       for (int j = 0; j < n * n; ++j) {

@@ -266,6 +266,22 @@ TEST(AllLights, SliversOfALampThatTouchesTheFloorAreBounded) {
   EXPECT_GT(front, 200u);
 }
 
+// A lamp lies in its own plane: whatever rounding makes of that, it sends itself no light.
+TEST(AllLights, ALampShowsItsEmissionAlone) {
+  Builder b;
+  scene::Material m;
+  m.emission = glm::vec3(4, 3, 2);
+  const glm::vec3 origin(7.3f, -4.1f, 2.7f), u(0.6f, 0.31f, -0.17f), v(-0.23f, 0.71f, 0.37f);
+  b.add(quad(origin, origin + u, origin + u + v, origin + v, b.material(m)));
+  const glm::vec3 middle = origin + 0.5f * (u + v), front = glm::normalize(glm::cross(u, v));
+  const scene::Camera camera = lookAt(middle + 2.0f * front, middle, 30);
+  const Picture p = render(b.scene, camera, 2, 4);
+  const size_t n = forSurfaces(b.scene, camera, p, [&](uint32_t i, const OracleSurface&, glm::dvec3, glm::dvec3 color) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(color[c], m.emission[c], 1e-5) << "pixel " << i;
+  });
+  EXPECT_GT(n, 100u);
+}
+
 // A lamp that only seems to shine: each way of sampling must know its front.
 TEST(AllLights, LampsThatFaceAwayAndLightsBelowTheHorizonGiveNothing) {
   Builder b = floorOf({0.8f, 0.8f, 0.8f}, 0, 0.5f);
