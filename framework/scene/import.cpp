@@ -9,8 +9,9 @@
 namespace weir::scene {
 namespace {
 
-constexpr std::array<std::string_view, 3> kImplemented = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                          "KHR_mesh_quantization"};
+constexpr auto kImplemented =
+    std::to_array<std::string_view>({"EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_lights_punctual",
+                                     "KHR_materials_emissive_strength", "KHR_mesh_quantization"});
 
 bool implemented(const std::string& name) {
   return std::find(kImplemented.begin(), kImplemented.end(), name) != kImplemented.end();
