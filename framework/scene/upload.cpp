@@ -1,6 +1,7 @@
 #include <weir/scene/upload.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <span>
@@ -83,7 +84,9 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   lights_ = gpu::uploadBuffer(device, prepared.lights, kStorage, "scene lights");
   alias_ = gpu::uploadBuffer(device, prepared.aliasTable, kStorage, "scene alias table");
   uploadTextures(scene, prepared);
+  const auto start = std::chrono::steady_clock::now();
   if (withAcceleration) acceleration_ = trace::Acceleration(device, prepared, positions_);
+  accelerationSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   makeLayout();
 
   traits = prepared.traits;
