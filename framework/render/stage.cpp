@@ -40,11 +40,11 @@ bool hasLights(const scene::Scene& scene) {
 
 Stage makeStage(const StageOptions& options, float aspect) {
   Stage s;
-  const auto start = std::chrono::steady_clock::now();
-  s.scene = scene::importGltf(options.scene);
-  s.importSeconds = secondsSince(start);
+  s.scene = scene::importGltf(options.scene, {}, &s.importTimes);
+  const auto hash = std::chrono::steady_clock::now();
   s.sceneLabel =
       fmt::format("{} {:016x}", std::filesystem::path(options.scene).filename().string(), fileHash(options.scene));
+  s.importTimes.read += secondsSince(hash);
   s.lightsLabel = "scene";
   if (options.replaceLights) {
     if (options.lights == 0) throw InputError("--replace-lights needs --lights N");

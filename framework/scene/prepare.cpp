@@ -1,11 +1,14 @@
+#include <weir/core/parallel.h>
 #include <weir/scene/gather_lights.h>
 #include <weir/scene/geometry_range.h>
 #include <weir/scene/prepare_materials.h>
 #include <weir/scene/prepared.h>
 #include <weir/scene/spatial_sort.h>
+#include <weir/scene/tangent_space.h>
 
 #include <algorithm>
 #include <array>
+#include <unordered_map>
 
 namespace weir::scene {
 namespace {
@@ -25,13 +28,52 @@ bool isInstanced(const Scene& scene, const Mesh& mesh, uint64_t uses, const Prep
   return uses >= limits.mergeUses && uses * triangles > limits.mergeTriangles;
 }
 
+/// Where each vertex of a primitive reads a texture; empty: the primitive has no such coordinates.
+std::vector<glm::vec2> coordinatesOf(const Primitive& primitive, const PreparedTexture& texture) {
+  std::vector<glm::vec2> uvs = texture.uvSet == 1 ? primitive.uv1 : primitive.uv0;
+  if (!texture.transform.isIdentity())
+    for (glm::vec2& uv : uvs) uv = texture.transform(uv);
+  return uvs;
+}
+
+/// Tangents of the primitives that lack them although their material has a normal map; once for all their instances.
+class MissingTangents {
+ public:
+  MissingTangents(const Scene& scene, const PreparedScene& prepared, const std::vector<size_t>& uses) {
+    std::vector<std::pair<const Primitive*, std::vector<glm::vec4>*>> work;
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+      for (const Primitive& primitive : scene.meshes[m].primitives) {
+        const size_t count = primitive.positions.size();
+        const bool given = primitive.normals.size() == count && primitive.tangents.size() == count;
+        if (uses[m] > 0 && !given && prepared.materials[packedIndex(prepared, primitive)].normalTexture >= 0)
+          work.emplace_back(&primitive, &tangents_[&primitive]);
+      }
+    parallelFor(work.size(), [&](size_t i) {
+      const Primitive& p = *work[i].first;
+      const PreparedTexture& map = prepared.textures[prepared.materials[packedIndex(prepared, p)].normalTexture];
+      *work[i].second = cornerTangents(p.positions, p.normals, coordinatesOf(p, map), p.indices);
+    });
+  }
+  /// Empty for any other primitive.
+  std::span<const glm::vec4> of(const Primitive& primitive) const {
+    const auto found = tangents_.find(&primitive);
+    return found == tangents_.end() ? std::span<const glm::vec4>() : std::span<const glm::vec4>(found->second);
+  }
+
+ private:
+  std::unordered_map<const Primitive*, std::vector<glm::vec4>> tangents_;
+};
+
 /// Geometry that goes into two ranges, by the sides of its materials.
 class SidedRanges {
  public:
-  explicit SidedRanges(const PreparedScene& prepared)
-      : materials_(prepared.materials), ranges_{GeometryRange(prepared), GeometryRange(prepared)} {}
+  SidedRanges(const PreparedScene& prepared, const MissingTangents& tangents)
+      : materials_(prepared.materials),
+        tangents_(tangents),
+        ranges_{GeometryRange(prepared), GeometryRange(prepared)} {}
   void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform) {
-    ranges_[(materials_[material].flags & kMaterialDoubleSided) != 0 ? 1 : 0].add(primitive, material, transform);
+    const size_t side = (materials_[material].flags & kMaterialDoubleSided) != 0 ? 1 : 0;
+    ranges_[side].add(primitive, material, transform, tangents_.of(primitive));
   }
   /// Appends both ranges, empty or not; their numbers.
   std::array<uint32_t, 2> finish(PreparedScene& prepared) {
@@ -46,6 +88,7 @@ class SidedRanges {
 
  private:
   const std::vector<PackedMaterial>& materials_;
+  const MissingTangents& tangents_;
   std::array<GeometryRange, 2> ranges_;
 };
 
@@ -83,7 +126,8 @@ PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits) {
   std::vector<char> instanced(scene.meshes.size(), 0);
   for (size_t m = 0; m < scene.meshes.size(); ++m) instanced[m] = isInstanced(scene, scene.meshes[m], uses[m], limits);
 
-  SidedRanges merged(prepared);
+  const MissingTangents tangents(scene, prepared, uses);
+  SidedRanges merged(prepared, tangents);
   for (const Instance& instance : scene.instances)
     if (!instanced[instance.mesh])
       for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
@@ -102,7 +146,7 @@ PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits) {
     if (!instanced[instance.mesh]) continue;
     std::array<uint32_t, 2>& ranges = rangesOf[instance.mesh];
     if (ranges[0] == 0) {
-      SidedRanges own(prepared);
+      SidedRanges own(prepared, tangents);
       for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
         own.add(primitive, packedIndex(prepared, primitive), glm::dmat4(1.0));
       ranges = own.finish(prepared);

@@ -1,6 +1,7 @@
 #include <weir/scene/upload.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <span>
 
@@ -69,7 +70,9 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   uvs1_ = gpu::uploadBuffer(device, prepared.uvs1, kStorage, "scene texture coordinates 1");
   speculars_ = gpu::uploadBuffer(device, prepared.speculars, kStorage, "scene specular materials");
   uploadTextures(scene, prepared);
+  const auto start = std::chrono::steady_clock::now();
   if (withAcceleration) acceleration_ = trace::Acceleration(device, prepared, positions_);
+  accelerationSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   makeLayout();
 
   traits = prepared.traits;

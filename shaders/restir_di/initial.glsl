@@ -13,13 +13,15 @@ struct Candidate {
   float spread;  // 1 / density of the point: per m² on triangles, 1 for punctual lights
 };
 
-Candidate drawCandidate(Light light, vec2 u, vec3 position) {
+// `error`: of the position, metres.
+Candidate drawCandidate(Light light, vec2 u, vec3 position, float error) {
   Candidate c;
   c.place = packPlace(u);
   if (param_triangles == kBySolidAngle && (light.kind & kKindMask) == kTriangle) {
-    const SphericalTriangle t = sphericalTriangle(light.position - position, light.a, light.b);
-    if (t.solidAngle > kLeastSolidAngle) {
-      c.place = placeAt(barycentricsAlong(light, position, sampleSphericalTriangle(t, u)));
+    const SphericalTriangle t = sphericalTriangle(light.position - position, light.a, light.b, error);
+    if (t.near) {
+      // Seen edge on it has no solid angle, and whatever place stands here counts for nothing.
+      if (t.solidAngle > 0.0) c.place = placeAt(barycentricsAlong(light, position, sampleSphericalTriangle(t, u)));
       c.light = evaluateLight(light, c.place, position);
       // dω = cos θ / d² dA turns the uniform density 1/Ω into one per m², at the very point that the 16 bits name.
       const vec3 d = c.light.target - position;
@@ -48,7 +50,7 @@ void run(uvec2 pixel) {
       const vec4 u = next4(random);
       const uint chosen = pickMixed(u.x, u.y, param_uniformShare);
       const Light light = sceneLights[chosen];
-      const Candidate c = drawCandidate(light, u.zw, surface.position);
+      const Candidate c = drawCandidate(light, u.zw, surface.position, surface.error);
       const float target = targetFunction(surface, c.light);
       if (!(target > 0.0)) continue;
       // 1/M · p̂ / p, with p = pdf of the light times density on it.
