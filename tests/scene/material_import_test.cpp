@@ -1,6 +1,17 @@
 // Materials, textures and vertex attributes of glTF's extensions as the importer reads them, and what is refused.
 #include "scene_support.h"
 
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STBI_WRITE_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
 #include <cmath>
 
 namespace weir::scene::test {
@@ -74,6 +85,23 @@ TEST(MaterialImport, EveryKindOfPng) {
   EXPECT_EQ(texels(png(1, 1, 16, 2, {std::string("\x7f\xff\x80\xc0\x01\xc2", 6)})), (V{127, 128, 2, 255}));
   EXPECT_EQ(texels(png(1, 1, 16, 6, {std::string("\xff\xff\x00\x00\xff\x00\x12\x34", 8)})), (V{255, 0, 254, 18}));
   EXPECT_EQ(texels(png(1, 1, 16, 0, {std::string("\xc0\x00", 2)})), (V{191, 191, 191, 255}));
+}
+
+TEST(MaterialImport, Jpeg) {
+  std::vector<uint8_t> image;
+  for (int i = 0; i < 16 * 16; ++i)
+    for (const int c : {10 * (i % 16), 10 * (i / 16), 200}) image.push_back(static_cast<uint8_t>(c));
+  std::string bytes;
+  const auto append = [](void* to, void* data, int size) {
+    static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<size_t>(size));
+  };
+  stbi_write_jpg_to_func(append, &bytes, 16, 16, 3, image.data(), 100);
+  const std::vector<int> read = texels(bytes);
+  ASSERT_EQ(read.size(), 16u * 16 * 4);
+  for (size_t i = 0; i < 256; ++i) {
+    for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(read[4 * i + c], image[3 * i + c], 6) << "quality 100 keeps a ramp";
+    EXPECT_EQ(read[4 * i + 3], 255);
+  }
 }
 
 TEST(MaterialImport, SpecularGlossinessIsPreferredToItsFallback) {
@@ -310,6 +338,14 @@ TEST(MaterialImport, EmissiveTexturesWeighByTheirOwnCoordinates) {
     EXPECT_NEAR(light.pdf, 0.5, 1e-6);
   }
   EXPECT_TRUE(p.traits.texturedLights);
+}
+
+// Whoever uses none of the models pays for none: no line stands before his shaders.
+TEST(MaterialImport, PlainScenesHaveNoTraits) {
+  const PreparedScene cornell = prepareScene(importGltf(WEIR_SOURCE_DIR "/scenes/cornell.glb"));
+  EXPECT_EQ(cornell.traits, SceneTraits{});
+  EXPECT_TRUE(traitDefines(cornell.traits).empty());
+  EXPECT_TRUE(cornell.colors.empty() && cornell.uvs1.empty() && cornell.speculars.empty());
 }
 
 }  // namespace
