@@ -25,7 +25,8 @@ ordered_json memory(const Scene& scene, const PreparedScene& prepared) {
   const auto bytes = [](const auto&... arrays) { return (uint64_t{0} + ... + (arrays.size() * sizeof(arrays[0]))); };
   uint64_t images = 0;
   for (const Image& image : scene.images) images += image.rgba.size();
-  return {{"geometry_bytes", bytes(prepared.positions, prepared.vertices, prepared.triangles)},
+  return {{"geometry_bytes",
+           bytes(prepared.positions, prepared.vertices, prepared.colors, prepared.uvs1, prepared.triangles)},
           {"image_bytes", images},
           {"light_bytes", bytes(prepared.lights, prepared.aliasTable)}};
 }

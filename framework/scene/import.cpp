@@ -40,9 +40,11 @@ void refuseRequiredExtensions(const GltfFile& file) {
 void warnAboutExtensions(GltfImport& import) {
   const auto used = import.file.json().find("extensionsUsed");
   if (used == import.file.json().end()) return;
-  // The textures themselves say what becomes of another kind of image.
-  const auto saysItself = [](const std::string& name) {
-    return std::find(kOtherImageFormats.begin(), kOtherImageFormats.end(), name) != kOtherImageFormats.end();
+  // Textures say themselves what becomes of another kind of image.
+  const auto saysItself = [&](const std::string& name) {
+    return std::find(kOtherImageFormats.begin(), kOtherImageFormats.end(), name) != kOtherImageFormats.end() &&
+           std::any_of(import.model.textures.begin(), import.model.textures.end(),
+                       [&](const tinygltf::Texture& t) { return t.extensions.contains(name); });
   };
   for (const auto& name : *used)
     if (!implemented(name.get<std::string>()) && !saysItself(name.get<std::string>()))

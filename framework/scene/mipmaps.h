@@ -19,9 +19,10 @@ struct MipContent {
 uint32_t mipLevelCount(uint32_t width, uint32_t height);
 
 /// Levels 1, 2, … of an image, RGBA with 8 bits a channel, tightly packed one behind the other; level l has
-/// max(1, side >> l) texels a side. Each texel is the mean over exactly the area of level 0 that it covers, also where
-/// sides are odd, and only the result is rounded: the mean of a level differs from that of level 0 by rounding alone.
-/// Vectors of normal maps are averaged as they are; whoever reads them normalises.
+/// max(1, side >> l) texels a side. Each texel is the mean over exactly the area that it covers of the level before,
+/// also where sides are odd, and only what is stored is rounded: the mean of a level differs from that of level 0 by
+/// rounding alone. With weightByAlpha a texel's colour counts 1/256 + alpha · 255/256. Vectors of normal maps are
+/// averaged as they are; whoever reads them normalises.
 std::vector<uint8_t> makeMipmaps(const Image& image, const MipContent& content);
 
 }  // namespace weir::scene

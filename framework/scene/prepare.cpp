@@ -28,8 +28,15 @@ bool isInstanced(const Scene& scene, const Mesh& mesh, uint64_t uses, const Prep
   return uses >= limits.mergeUses && uses * triangles > limits.mergeTriangles;
 }
 
-/// Tangents of the primitives that lack them although their material has a normal map, in the texture coordinates at
-/// which it is read; once for all their instances.
+/// Where each vertex of a primitive reads a texture; empty: the primitive has no such coordinates.
+std::vector<glm::vec2> coordinatesOf(const Primitive& primitive, const PreparedTexture& texture) {
+  std::vector<glm::vec2> uvs = texture.uvSet == 1 ? primitive.uv1 : primitive.uv0;
+  if (!texture.transform.isIdentity())
+    for (glm::vec2& uv : uvs) uv = texture.transform(uv);
+  return uvs;
+}
+
+/// Tangents of the primitives that lack them although their material has a normal map; once for all their instances.
 class MissingTangents {
  public:
   MissingTangents(const Scene& scene, const PreparedScene& prepared, const std::vector<size_t>& uses) {
@@ -44,10 +51,7 @@ class MissingTangents {
     parallelFor(work.size(), [&](size_t i) {
       const Primitive& p = *work[i].first;
       const PreparedTexture& map = prepared.textures[prepared.materials[packedIndex(prepared, p)].normalTexture];
-      std::vector<glm::vec2> uvs = map.uvSet == 0 ? p.uv0 : p.uv1;
-      uvs.resize(p.positions.size(), glm::vec2(0.0f));  // a set that the primitive lacks is all zero
-      for (glm::vec2& uv : uvs) uv = map.transform(uv);
-      *work[i].second = cornerTangents(p.positions, p.normals, uvs, p.indices);
+      *work[i].second = cornerTangents(p.positions, p.normals, coordinatesOf(p, map), p.indices);
     });
   }
   /// Empty for any other primitive.

@@ -1,11 +1,10 @@
 // Textures of a scene: images with their smaller levels, samplers, and how each is read.
+#include <weir/core/parallel.h>
 #include <weir/scene/upload.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <span>
-#include <thread>
 
 namespace weir::scene {
 namespace {
@@ -88,17 +87,9 @@ void SceneGpu::uploadTextures(const Scene& scene, const PreparedScene& prepared)
   }
 
   // Smaller levels on all cores: on one, a large scene's take as long as all the rest of its loading.
-  std::atomic<size_t> next{0};
-  const auto shrink = [&] {
-    for (size_t i; (i = next++) < images.size();)
-      if (images[i].mipmapped) images[i].levels = makeMipmaps(imageOf(images[i].image), images[i].content);
-  };
-  {
-    std::vector<std::jthread> pool;
-    const size_t threads = std::min<size_t>(std::max(1u, std::thread::hardware_concurrency()), images.size());
-    for (size_t i = 1; i < threads; ++i) pool.emplace_back(shrink);
-    shrink();
-  }
+  parallelFor(images.size(), [&](size_t i) {
+    if (images[i].mipmapped) images[i].levels = makeMipmaps(imageOf(images[i].image), images[i].content);
+  });
   for (const ImageUse& use : images) {
     const Image& source = imageOf(use.image);
     gpu::ImageDesc desc;

@@ -39,8 +39,8 @@ scene::Primitive panel(int material) {
   return p;
 }
 
-// Nearest lookups of one texel: what is left is the sRGB decoding of the device, see Surface.SrgbDecoding.
-const Tolerance kTextured{.normal = 1e-3, .root = 4e-3, .roughness = 1e-5, .emission = 0.02};
+// Nearest lookups of one texel: what is left is how the device decodes sRGB, in one texture or in a product of two.
+const Tolerance kTextured{.normal = 1e-3, .root = 2 * kSrgbRoot, .roughness = 1e-5, .emission = kSrgbRelative};
 
 TEST(Materials, SpecularGlossiness) {
   for (const bool textured : {false, true}) {
@@ -158,7 +158,7 @@ TEST(Materials, VertexColoursScaleTheBaseColour) {
     p.colors = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0.1f, 0.3f, 1, 1}, {1, 1, 1, 1}};
     b.add(p);
     EXPECT_TRUE(scene::prepareScene(b.scene).traits.vertexColors);
-    Tolerance t{.root = 1e-5, .emission = 1e-5};
+    Tolerance t{.root = 1e-5, .emission = 1e-5, .emissionBlend = 1e-5};
     if (model == scene::MaterialModel::Unlit) t.roughnessStep = 1.0 / 1023;
     showBoth(b.scene, t);
   }
@@ -184,9 +184,7 @@ TEST(Materials, ColoursAndCoordinatesFollowTheirVertices) {
   right[0] *= -0.5f;
   b.add(colored, left);
   b.add(plain, right);
-  Tolerance t = kTextured;
-  t.root = 5e-3;
-  showBoth(b.scene, t);
+  showBoth(b.scene, kTextured);
 }
 
 // Two sets and a transform in every slot, the normal map's among them.

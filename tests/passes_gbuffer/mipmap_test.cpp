@@ -60,6 +60,8 @@ TEST(Mipmap, LevelsAreThoseOfTheirRule) {
                               {kLinear, kNearest, scene::MipFilter::None}};
   for (const Sampler& sampler : samplers) {
     for (const float stretch : {1.0f, 4.0f}) {
+      // Texels far smaller than the rounding of their coordinates aren't comparable.
+      if (sampler.mip == scene::MipFilter::None && stretch > 1) continue;
       for (const auto& [type, rule] :
            {std::pair("gbuffer.RayTraced", LevelRule::Cone), {"gbuffer.Raster", LevelRule::Derivatives}}) {
         SCOPED_TRACE(testing::Message() << type << " stretch " << stretch << " min " << int(sampler.min) << " mip "
@@ -70,7 +72,9 @@ TEST(Mipmap, LevelsAreThoseOfTheirRule) {
         RayOracle oracle(t.sourceScene(), t.prepared());
         oracle.seeThrough(kCamera, kWidth, kHeight, rule);
         // Devices blend texels and levels in steps of 1/256 of neighbours that differ by the whole range.
-        expectOracle(frame, oracle, kCamera, {.normal = 1e-3, .root = 0.02, .roughness = 0.02, .emission = 0.03}, 0.05);
+        expectOracle(
+            frame, oracle, kCamera,
+            {.normal = 1e-3, .root = 0.02, .roughness = 0.02, .emission = kSrgbRelative, .emissionBlend = 0.03}, 0.05);
       }
     }
   }
@@ -120,7 +124,10 @@ TEST(Mipmap, TheRulesAgreeOnTexturesThatAreNotStretched) {
 }
 
 // Levels keep a texture's mean, and so the two G-buffers agree in the mean of what they show although they differ in
-// sharpness: to 0.1 % of a picture of many texels.
+// sharpness: to 0.1 % of a picture of many texels. On a stretched texture the cone, which is isotropic, reads a level
+// too fine for one axis: its texels are samples of those that the pixel covers. Of 16 · 3072 lookups of independent
+// texels, whose light varies by 0.9 of its mean, 3 σ of the mean would be 1.2 % at level 0, and a quarter of that two
+// levels further up, where most of the floor is.
 TEST(Mipmap, TheGBuffersAgreeInTheMean) {
   for (const float stretch : {1.0f, 4.0f}) {
     glm::dvec3 emission[2] = {}, diffuse[2] = {};
@@ -139,8 +146,8 @@ TEST(Mipmap, TheGBuffersAgreeInTheMean) {
       }
     }
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(emission[1][c] / emission[0][c], 1.0, 1e-3) << "stretch " << stretch;
-      EXPECT_NEAR(diffuse[1][c] / diffuse[0][c], 1.0, 1e-3) << "stretch " << stretch;
+      EXPECT_NEAR(emission[1][c] / emission[0][c], 1.0, stretch > 1 ? 3e-3 : 1e-3) << "stretch " << stretch;
+      EXPECT_NEAR(diffuse[1][c] / diffuse[0][c], 1.0, stretch > 1 ? 3e-3 : 1e-3) << "stretch " << stretch;
     }
   }
 }

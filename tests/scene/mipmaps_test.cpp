@@ -1,8 +1,9 @@
-// Smaller levels of images against exact means by area in double precision.
+// Smaller levels of images against means by area in double precision.
 #include "scene_support.h"
 
 #include <weir/scene/mipmaps.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -27,32 +28,48 @@ Image noise(uint32_t width, uint32_t height, int least = 0, int most = 255) {
   return image;
 }
 
-/// Largest difference, in codes, between makeMipmaps() and the mean over each texel's area of level 0.
+/// Colours, linear and multiplied by what they count for, then alpha, then what they count for.
+using Texel = std::array<double, 5>;
+
+/// The mean over the area of each texel of the next level.
+std::vector<Texel> halved(const std::vector<Texel>& level, uint32_t width, uint32_t height) {
+  const uint32_t w = std::max(1u, width / 2), h = std::max(1u, height / 2);
+  const double sx = double(width) / w, sy = double(height) / h;
+  const auto overlap = [](double low, double high, uint32_t i) {
+    return std::max(0.0, std::min<double>(high, i + 1) - std::max<double>(low, i));
+  };
+  std::vector<Texel> result;
+  for (uint32_t y = 0; y < h; ++y)
+    for (uint32_t x = 0; x < w; ++x) {
+      Texel sum{};
+      for (uint32_t j = 0; j < height; ++j)
+        for (uint32_t i = 0; i < width; ++i) {
+          const double area = overlap(x * sx, (x + 1) * sx, i) * overlap(y * sy, (y + 1) * sy, j) / (sx * sy);
+          for (size_t k = 0; k < 5; ++k) sum[k] += area * level[size_t{j} * width + i][k];
+        }
+      result.push_back(sum);
+    }
+  return result;
+}
+
+/// Largest difference, in codes, between makeMipmaps() and means over areas.
 double worstCode(const Image& image, const MipContent& content) {
+  std::vector<Texel> level;
+  for (size_t i = 0; i < image.rgba.size(); i += 4) {
+    const uint8_t* c = image.rgba.data() + i;
+    const double counts = content.weightByAlpha ? 1.0 / 256 + c[3] / 255.0 * 255 / 256 : 1.0;
+    level.push_back({counts * decode(c[0], content.srgb), counts * decode(c[1], content.srgb),
+                     counts * decode(c[2], content.srgb), c[3] / 255.0, counts});
+  }
   const std::vector<uint8_t> made = makeMipmaps(image, content);
   size_t at = 0;
   double worst = 0.0;
-  const uint32_t levels = mipLevelCount(image.width, image.height);
-  for (uint32_t level = 1; level < levels; ++level) {
-    const uint32_t w = std::max(1u, image.width >> level), h = std::max(1u, image.height >> level);
-    const double sx = double(image.width) / w, sy = double(image.height) / h;
-    for (uint32_t y = 0; y < h; ++y)
-      for (uint32_t x = 0; x < w; ++x, at += 4) {
-        double sum[4] = {}, weight = 0.0, area = 0.0;
-        for (uint32_t j = 0; j < image.height; ++j)
-          for (uint32_t i = 0; i < image.width; ++i) {
-            const double overlap = std::max(0.0, std::min<double>(i + 1, (x + 1) * sx) - std::max<double>(i, x * sx)) *
-                                   std::max(0.0, std::min<double>(j + 1, (y + 1) * sy) - std::max<double>(j, y * sy));
-            const uint8_t* c = image.rgba.data() + 4 * (size_t{j} * image.width + i);
-            const double seen = overlap * (content.weightByAlpha ? 1.0 / 256 + c[3] / 255.0 * 255 / 256 : 1.0);
-            for (int k = 0; k < 3; ++k) sum[k] += seen * decode(c[k], content.srgb);
-            sum[3] += overlap * c[3] / 255.0;
-            weight += seen;
-            area += overlap;
-          }
-        for (int k = 0; k < 3; ++k)
-          worst = std::max(worst, std::abs(made[at + k] - encode(sum[k] / weight, content.srgb)));
-        worst = std::max(worst, std::abs(made[at + 3] - sum[3] / area * 255.0));
+  for (uint32_t w = image.width, h = image.height; w * h > 1; w = std::max(1u, w / 2), h = std::max(1u, h / 2)) {
+    level = halved(level, w, h);
+    for (const Texel& t : level)
+      for (size_t k = 0; k < 4; ++k, ++at) {
+        const double code = k < 3 ? encode(t[k] / t[4], content.srgb) : t[3] * 255.0;
+        worst = std::max(worst, std::abs(made.at(at) - code));
       }
   }
   EXPECT_EQ(at, made.size());

@@ -29,6 +29,26 @@ double overlap(double low, double high, int64_t i) {
   return std::max(0.0, std::min(high, static_cast<double>(i) + 1) - std::max(low, static_cast<double>(i)));
 }
 
+/// The mean over the area that each texel of the next level covers.
+template <typename Level>
+Level halved(const Level& from) {
+  Level to{std::max(1u, from.width / 2), std::max(1u, from.height / 2), {}};
+  const double sx = double(from.width) / to.width, sy = double(from.height) / to.height;
+  for (uint32_t y = 0; y < to.height; ++y) {
+    for (uint32_t x = 0; x < to.width; ++x) {
+      glm::dvec4 sum(0.0);
+      for (auto j = static_cast<int64_t>(y * sy); j < from.height && double(j) < (y + 1) * sy; ++j) {
+        for (auto i = static_cast<int64_t>(x * sx); i < from.width && double(i) < (x + 1) * sx; ++i) {
+          sum += overlap(x * sx, (x + 1) * sx, i) * overlap(y * sy, (y + 1) * sy, j) / (sx * sy) *
+                 from.texels[static_cast<size_t>(j) * from.width + static_cast<size_t>(i)];
+        }
+      }
+      to.texels.push_back(sum);
+    }
+  }
+  return to;
+}
+
 }  // namespace
 
 double oracleSrgbToLinear(double c) {
@@ -49,42 +69,29 @@ const std::vector<TextureOracle::Level>& TextureOracle::chain(int32_t index) con
   if (!levels.empty()) return levels;
   const scene::PreparedTexture& t = prepared_.textures[index];
   const scene::Image& image = scene_.images[t.image];
-  Level base{image.width, image.height, {}};
+  // Exact levels have colours multiplied by what they count for; those that are read are divided and rounded.
+  Level exact{image.width, image.height, {}}, read = exact;
+  const auto counts = [&](double alpha) { return t.content.weightByAlpha ? 1.0 / 256 + alpha * 255 / 256 : 1.0; };
   for (size_t i = 0; i < image.rgba.size(); i += 4) {
     glm::dvec4 c;
     for (size_t k = 0; k < 4; ++k) c[static_cast<int>(k)] = image.rgba[i + k] / 255.0;
     for (int k = 0; k < 3 && t.content.srgb; ++k) c[k] = oracleSrgbToLinear(c[k]);
-    base.texels.push_back(c);
+    read.texels.push_back(c);
+    exact.texels.emplace_back(glm::dvec3(c) * counts(c.a), c.a);
   }
-  levels.push_back(base);
+  levels.push_back(read);
   if (t.mipFilter == scene::MipFilter::None) return levels;
   const auto round = [](double code) { return std::floor(std::clamp(code, 0.0, 1.0) * 255.0 + 0.5) / 255.0; };
-  for (uint32_t shift = 1; std::max(image.width, image.height) >> shift != 0; ++shift) {
-    Level level{std::max(1u, image.width >> shift), std::max(1u, image.height >> shift), {}};
-    const double sx = double(image.width) / level.width, sy = double(image.height) / level.height;
-    for (uint32_t y = 0; y < level.height; ++y) {
-      for (uint32_t x = 0; x < level.width; ++x) {
-        glm::dvec4 sum(0.0);
-        double colour = 0.0;
-        for (auto j = static_cast<int64_t>(y * sy);
-             j < std::min<int64_t>(image.height, std::llround(std::ceil((y + 1) * sy))); ++j) {
-          for (auto i = static_cast<int64_t>(x * sx);
-               i < std::min<int64_t>(image.width, std::llround(std::ceil((x + 1) * sx))); ++i) {
-            const double area = overlap(x * sx, (x + 1) * sx, i) * overlap(y * sy, (y + 1) * sy, j) / (sx * sy);
-            const glm::dvec4 c = base.texels[static_cast<size_t>(j) * image.width + static_cast<size_t>(i)];
-            const double weight = area * (t.content.weightByAlpha ? 1.0 / 256 + c.a * 255 / 256 : 1.0);
-            sum += glm::dvec4(glm::dvec3(c) * weight, c.a * area);
-            colour += weight;
-          }
-        }
-        sum = glm::dvec4(glm::dvec3(sum) / colour, sum.a);
-        for (int k = 0; k < 4; ++k) {
-          sum[k] = t.content.srgb && k < 3 ? oracleSrgbToLinear(round(linearToSrgb(sum[k]))) : round(sum[k]);
-        }
-        level.texels.push_back(sum);
+  while (exact.texels.size() > 1) {
+    exact = halved(exact);
+    read = exact;
+    for (glm::dvec4& c : read.texels) {
+      c = glm::dvec4(glm::dvec3(c) / counts(c.a), c.a);
+      for (int k = 0; k < 4; ++k) {
+        c[k] = t.content.srgb && k < 3 ? oracleSrgbToLinear(round(linearToSrgb(c[k]))) : round(c[k]);
       }
     }
-    levels.push_back(level);
+    levels.push_back(read);
   }
   return levels;
 }

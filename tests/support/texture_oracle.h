@@ -1,5 +1,5 @@
 // What a texture lookup gives, in double precision: sRGB, wrapping, filters and levels from glTF 2.0 and Vulkan 1.3,
-// chapter "Image Operations". Levels are means over level 0 by area, each from level 0 itself.
+// chapter "Image Operations". Levels are means by area over the level before, before that is rounded.
 #pragma once
 
 #include <weir/scene/prepared.h>
