@@ -19,6 +19,12 @@ struct RunFacts {
   double importSeconds = 0.0, prepareSeconds = 0.0, uploadSeconds = 0.0, compileSeconds = 0.0;
   uint64_t sceneBytes = 0, transientBytes = 0, historyBytes = 0;
   uint64_t rays = 0;  ///< of one frame
+  struct Environment {
+    std::string file;                                       ///< empty: none
+    uint32_t width = 0, height = 0, columns = 0, rows = 0;  ///< of the picture and of the table that picks from it
+    double integral = 0.0;                                  ///< ∫ luminance dω, nit · sr
+    double share = 0.0;                                     ///< of the candidates that are picked by power
+  } environment;
 };
 
 /// Frames from the first tenth on (at least one) are left out as warm-up when there are three or more.

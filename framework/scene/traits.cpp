@@ -8,6 +8,7 @@ std::string traitDefines(const SceneTraits& traits) {
     if (holds) lines += std::string("#define SCENE_") + name + " 1\n";
   };
   define(traits.texturedLights, "TEXTURED_LIGHTS");
+  define(traits.environment, "ENVIRONMENT");
   return lines;
 }
 

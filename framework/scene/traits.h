@@ -9,6 +9,7 @@ namespace weir::scene {
 /// prepareScene() finds them; a new model adds its trait here, to traitDefines() and to where it is found.
 struct SceneTraits {
   bool texturedLights = false;  ///< SCENE_TEXTURED_LIGHTS: some emissive triangle's radiance varies with its texture
+  bool environment = false;     ///< SCENE_ENVIRONMENT: light from all around, scene/environment.h
   bool operator==(const SceneTraits&) const = default;
 };
 

@@ -1,5 +1,5 @@
 // Brute-force direct light: a shadow ray to EVERY punctual light, and stratified rays to every emissive triangle. Shares with the
-// reservoirs only the BSDF, the punctual lights' formula and the rays; nothing here picks, weighs or reuses.
+// reservoirs only the BSDF, the punctual lights' formula, the environment's table and the rays; nothing here weighs or reuses.
 #include "random.glsl"
 #include "bsdf.glsl"
 #include "visibility.glsl"
@@ -37,6 +37,34 @@ LightSample sampleByArea(Light light, vec2 u, vec3 position) {
   return evaluateTriangle(light, vec2(root * (1.0 - u.y), root * u.y), position);
 }
 
+#ifdef SCENE_ENVIRONMENT
+const int kByImportance = 0, kUniform = 1;
+
+// n² directions, stratified over the sphere or over the cells of the table.
+vec3 arrivingFromEnvironment(Surface surface, int n, inout Random random) {
+  const uint strata = uint(n * n);
+  vec3 sum = vec3(0.0);
+  for (uint j = 0u; j < strata; ++j) {
+    uvec4 bits = nextBits4(random);
+    LightSample s;
+    float spread = 4.0 * kPi;
+    if (param_environment == kUniform) {
+      const vec2 u = (vec2(j % uint(n), j / uint(n)) + vec2(uniformFloat(bits.x), uniformFloat(bits.y))) / float(n);
+      const float y = 1.0 - 2.0 * u.y, across = 2.0 * sqrt(u.y * (1.0 - u.y)), longitude = 2.0 * kPi * u.x;
+      const vec3 direction = vec3(across * cos(longitude), y, across * sin(longitude));
+      s = environmentSample(direction, environmentRadiance(direction), surface.position);
+    } else {
+      const uint width = 0xffffffffu / strata;
+      bits.x = j * width + scaleBits(bits.x, width);
+      const uint place = pickEnvironment(bits, spread);
+      s = evaluateEnvironment(place, surface.position);
+    }
+    sum += arriving(surface, s) * spread;
+  }
+  return sum / float(strata);
+}
+#endif
+
 void run(uvec2 pixel) {
   const uint index = pixel.y * frameWidth + pixel.x;
   vec3 color = imageLoad(in_emission, ivec2(pixel)).rgb;
@@ -47,6 +75,12 @@ void run(uvec2 pixel) {
     const int n = param_samples;  // a side of the stratified square on each triangle
     for (uint i = 0u; i < lightCount(); ++i) {
       const Light light = sceneLights[i];
+#ifdef SCENE_ENVIRONMENT
+      if ((light.kind & kKindMask) == kEnvironment) {
+        color += arrivingFromEnvironment(surface, n, random);
+        continue;
+      }
+#endif
       if ((light.kind & kKindMask) != kTriangle) {
         color += arriving(surface, evaluatePunctual(light, surface.position));
         continue;

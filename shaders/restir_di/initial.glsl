@@ -10,11 +10,19 @@ const int kByArea = 0, kBySolidAngle = 1;
 struct Candidate {
   LightSample light;
   uint place;
-  float spread;  // 1 / density of the point: per m² on triangles, 1 for punctual lights
+  float spread;  // 1 / density of the point: m² on triangles, steradian on the environment, 1 for punctual lights
 };
 
-Candidate drawCandidate(Light light, vec2 u, vec3 position) {
+Candidate drawCandidate(Light light, uvec2 bits, vec3 position, inout Random random) {
   Candidate c;
+#ifdef SCENE_ENVIRONMENT
+  if ((light.kind & kKindMask) == kEnvironment) {
+    c.place = pickEnvironment(nextBits4(random), c.spread);
+    c.light = evaluateEnvironment(c.place, position);
+    return c;
+  }
+#endif
+  const vec2 u = vec2(uniformFloat(bits.x), uniformFloat(bits.y));
   c.place = packPlace(u);
   if (param_triangles == kBySolidAngle && (light.kind & kKindMask) == kTriangle) {
     const SphericalTriangle t = sphericalTriangle(light.position - position, light.a, light.b);
@@ -45,10 +53,10 @@ void run(uvec2 pixel) {
     surface = unpackSurface(packed, pixel, camera, frameSize);
     Random random = randomFor(pixel, 0u);
     for (int i = 0; i < param_candidates; ++i) {
-      const vec4 u = next4(random);
-      const uint chosen = pickMixed(u.x, u.y, param_uniformShare);
+      const uvec4 bits = nextBits4(random);
+      const uint chosen = pickMixed(bits.xy, param_uniformShare);
       const Light light = sceneLights[chosen];
-      const Candidate c = drawCandidate(light, u.zw, surface.position);
+      const Candidate c = drawCandidate(light, bits.zw, surface.position, random);
       const float target = targetFunction(surface, c.light);
       if (!(target > 0.0)) continue;
       // 1/M · p̂ / p, with p = pdf of the light times density on it.
