@@ -53,6 +53,35 @@ EnvironmentPoint environmentPoint(uint place) {
   return p;
 }
 
+// The place that stands for a direction: environmentPoint()'s inverse.
+uint environmentPlace(vec3 direction) {
+  const uvec2 cells = uvec2(sceneEnvironment.columns, sceneEnvironment.rows), steps = environmentSteps();
+  const vec2 size = vec2(sceneEnvironment.width, sceneEnvironment.height);
+  vec2 uv = environmentUv(direction);
+  uv.x -= floor(uv.x);
+  const uvec2 cell = min(uvec2(uv * size) / sceneEnvironment.block, cells - 1u);
+  const vec2 low = vec2(cell * sceneEnvironment.block) / size;
+  const vec2 high = min(vec2((cell + 1u) * sceneEnvironment.block) / size, vec2(1.0));
+  const bool south = low.y + high.y > 1.0;
+  const vec2 ends = south ? 1.0 - vec2(high.y, low.y) : vec2(low.y, high.y);
+  const vec2 halfSine = sin(ends * (0.5 * kEnvironmentPi)), squares = halfSine * halfSine;
+  // sin²(θ/2) by whichever of its two forms keeps its precision.
+  const float y = south ? -direction.y : direction.y;
+  const float square = y > 0.0 ? dot(direction.xz, direction.xz) / (2.0 * (1.0 + y)) : 0.5 * (1.0 - y);
+  const float row = (square - squares.x) / (squares.y - squares.x);
+  const vec2 part = clamp(vec2((uv.x - low.x) / (high.x - low.x), south ? 1.0 - row : row), 0.0, 1.0);
+  const uvec2 code = cell * steps + min(uvec2(part * vec2(steps)), steps - 1u);
+  return code.x | (code.y << 16u);
+}
+
+// Density with which pickEnvironment() finds a place, per steradian.
+float environmentDensity(uint place) {
+  const uvec2 cells = uvec2(sceneEnvironment.columns, sceneEnvironment.rows);
+  const uvec2 cell = min(uvec2(place & 0xffffu, place >> 16u) / environmentSteps(), cells - 1u);
+  const float spread = sceneEnvironment.cells[cell.y * cells.x + cell.x].spread;
+  return spread > 0.0 ? 1.0 / spread : 0.0;
+}
+
 // Picks a place from uniform bits; `spread` is 1 / its density, steradian.
 uint pickEnvironment(uvec4 bits, out float spread) {
   uint cell = scaleBits(bits.x, sceneEnvironment.columns * sceneEnvironment.rows);

@@ -4,6 +4,9 @@
 #include "bsdf.glsl"
 #include "visibility.glsl"
 #include "spherical_triangle.glsl"
+#ifdef SCENE_ENVIRONMENT
+#include "bsdf_sample.glsl"
+#endif
 
 vec3 arriving(Surface surface, LightSample light) {
   if (light.radiance == vec3(0.0)) return vec3(0.0);
@@ -40,28 +43,38 @@ LightSample sampleByArea(Light light, vec2 u, vec3 position) {
 #ifdef SCENE_ENVIRONMENT
 const int kByImportance = 0, kUniform = 1;
 
-// n² directions, stratified over the sphere or over the cells of the table.
-vec3 arrivingFromEnvironment(Surface surface, int n, inout Random random) {
-  const uint strata = uint(n * n);
-  vec3 sum = vec3(0.0);
-  for (uint j = 0u; j < strata; ++j) {
+LightSample environmentFrom(vec3 direction, vec3 position) {
+  return environmentSample(direction, environmentRadiance(direction), position);
+}
+
+// Stratum j of n² on the sphere.
+LightSample sampleUniformly(uint j, uint n, vec2 u, vec3 position) {
+  u = (vec2(j % n, j / n) + u) / float(n);
+  const float y = 1.0 - 2.0 * u.y, across = 2.0 * sqrt(u.y * (1.0 - u.y)), longitude = 2.0 * kPi * u.x;
+  LightSample s = environmentFrom(vec3(across * cos(longitude), y, across * sin(longitude)), position);
+  s.area = 4.0 * kPi;
+  return s;
+}
+
+// Stratum j of n² of the table's cells or, beyond those, a direction by the BSDF; both with the reciprocal of the sum of the two
+// densities as their area: the balance heuristic (Veach 1997).
+LightSample sampleByImportance(Surface surface, uint j, uint strata, inout Random random) {
+  LightSample s;
+  float density;
+  if (j < strata) {
     uvec4 bits = nextBits4(random);
-    LightSample s;
-    float spread = 4.0 * kPi;
-    if (param_environment == kUniform) {
-      const vec2 u = (vec2(j % uint(n), j / uint(n)) + vec2(uniformFloat(bits.x), uniformFloat(bits.y))) / float(n);
-      const float y = 1.0 - 2.0 * u.y, across = 2.0 * sqrt(u.y * (1.0 - u.y)), longitude = 2.0 * kPi * u.x;
-      const vec3 direction = vec3(across * cos(longitude), y, across * sin(longitude));
-      s = environmentSample(direction, environmentRadiance(direction), surface.position);
-    } else {
-      const uint width = 0xffffffffu / strata;
-      bits.x = j * width + scaleBits(bits.x, width);
-      const uint place = pickEnvironment(bits, spread);
-      s = evaluateEnvironment(place, surface.position);
-    }
-    sum += arriving(surface, s) * spread;
+    const uint width = 0xffffffffu / strata;
+    bits.x = j * width + scaleBits(bits.x, width);
+    float spread;
+    s = evaluateEnvironment(pickEnvironment(bits, spread), surface.position);
+    density = 1.0 / spread;
+  } else {
+    s = environmentFrom(sampleBsdf(surface, next4(random).xyz), surface.position);
+    density = environmentDensity(environmentPlace(s.direction));
   }
-  return sum / float(strata);
+  density += bsdfDensity(surface, s.direction);
+  s.area = density > 0.0 ? 1.0 / density : 0.0;
+  return s;
 }
 #endif
 
@@ -72,30 +85,43 @@ void run(uvec2 pixel) {
   if (isSurface(packed)) {
     const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
     Random random = randomFor(pixel, 0u);
-    const int n = param_samples;  // a side of the stratified square on each triangle
+    const uint n = uint(param_samples);  // a side of the stratified square on each triangle
     for (uint i = 0u; i < lightCount(); ++i) {
       const Light light = sceneLights[i];
+      const uint kind = light.kind & kKindMask;
+      SphericalTriangle t;
+      bool large = false;
+      uint samples = 1u, strata = 1u;
+      if (kind == kTriangle) {
+        t = sphericalTriangle(light.position - surface.position, light.a, light.b);
+        large = t.solidAngle > kLeastSolidAngle;
+        samples = strata = n * n;
+      }
 #ifdef SCENE_ENVIRONMENT
-      if ((light.kind & kKindMask) == kEnvironment) {
-        color += arrivingFromEnvironment(surface, n, random);
-        continue;
+      if (kind == kEnvironment) {
+        strata = n * n;
+        samples = param_environment == kUniform ? strata : 2u * strata;
       }
 #endif
-      if ((light.kind & kKindMask) != kTriangle) {
-        color += arriving(surface, evaluatePunctual(light, surface.position));
-        continue;
-      }
-      const SphericalTriangle t = sphericalTriangle(light.position - surface.position, light.a, light.b);
-      const bool large = t.solidAngle > kLeastSolidAngle;
+      // One place that traces rays: compilers put a copy of all that belongs to it into each.
       vec3 sum = vec3(0.0);
-      for (int j = 0; j < n * n; ++j) {
-        const vec2 u = (vec2(j % n, j / n) + next2(random)) / float(n);
+      for (uint j = 0u; j < samples; ++j) {
         LightSample s;
-        if (large) s = sampleBySolidAngle(light, t, u, surface.position);
-        else s = sampleByArea(light, u, surface.position);
+        if (kind == kTriangle) {
+          const vec2 u = (vec2(j % n, j / n) + next2(random)) / float(n);
+          if (large) s = sampleBySolidAngle(light, t, u, surface.position);
+          else s = sampleByArea(light, u, surface.position);
+#ifdef SCENE_ENVIRONMENT
+        } else if (kind == kEnvironment) {
+          if (param_environment == kUniform) s = sampleUniformly(j, n, next2(random), surface.position);
+          else s = sampleByImportance(surface, j, strata, random);
+#endif
+        } else {
+          s = evaluatePunctual(light, surface.position);
+        }
         sum += arriving(surface, s) * s.area;
       }
-      color += sum / float(n * n);
+      color += sum / float(strata);
     }
   }
   imageStore(out_color, ivec2(pixel), vec4(color, 1.0));
