@@ -19,6 +19,17 @@ ordered_json vec(const glm::vec3& v) {
   return {v.x, v.y, v.z};
 }
 
+/// What the scene holds in memory once it is arranged. Devices need about the same again, and acceleration structures:
+/// `weir render --stats` says how much.
+ordered_json memory(const Scene& scene, const PreparedScene& prepared) {
+  const auto bytes = [](const auto&... arrays) { return (uint64_t{0} + ... + (arrays.size() * sizeof(arrays[0]))); };
+  uint64_t images = 0;
+  for (const Image& image : scene.images) images += image.rgba.size();
+  return {{"geometry_bytes", bytes(prepared.positions, prepared.vertices, prepared.triangles)},
+          {"image_bytes", images},
+          {"light_bytes", bytes(prepared.lights, prepared.aliasTable)}};
+}
+
 ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
   const SceneSummary s = summarize(scene);
   ordered_json cameras = ordered_json::array();
@@ -44,6 +55,7 @@ ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
                  {"triangles", prepared.triangleLights},
                  {"sampled", prepared.lights.size()}};
   j["textures"] = {{"all", s.textures}, {"images", s.images}, {"used", prepared.textures.size()}};
+  j["memory"] = memory(scene, prepared);
   j["animations"] = s.animations;
   if (s.bounds.empty)
     j["bounds"] = nullptr;

@@ -10,6 +10,8 @@
 #include <weir/render/statistics.h>
 #include <weir/render/write_file.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -99,7 +101,8 @@ std::map<std::string, std::string> header(const RenderOptions& o, const Stage& s
 RunFacts::Environment environmentFacts(const Stage& stage) {
   const scene::Environment& e = stage.scene.environment;
   const scene::EnvironmentTable& table = stage.prepared.environment;
-  RunFacts::Environment facts{e.path, e.width, e.height, table.columns, table.rows, table.integral};
+  RunFacts::Environment facts{e.path,     e.width,        e.height, table.columns,
+                              table.rows, table.integral, 0.0,      stage.environmentSeconds};
   const auto environment = static_cast<uint32_t>(scene::GpuLightKind::Environment);
   for (const scene::GpuLight& light : stage.prepared.lights) {
     if (light.kind == environment) facts.share = light.pdf;
@@ -118,6 +121,12 @@ uint64_t countRays(const gpu::Device& device, shader::Compiler& compiler, Regist
   return executor.rays();
 }
 
+uint64_t peakHostBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return uint64_t{1024} * static_cast<uint64_t>(usage.ru_maxrss);  // Linux counts in KiB
+}
+
 }  // namespace
 
 uint32_t restartSeed(uint32_t seed, uint32_t restart) {
@@ -130,6 +139,7 @@ uint32_t restartSeed(uint32_t seed, uint32_t restart) {
 
 void render(const RenderOptions& o) {
   checkOptions(o);
+  const Clock::time_point begin = Clock::now();
   Registry registry(pluginSearchPath(o.pluginPaths));
   graph::CompiledGraph compiled = graph::compileFile(o.graph, withExposure(o), registry.catalog(), o.width, o.height);
   const std::vector<std::string> names = wanted(o, compiled);
@@ -165,6 +175,10 @@ void render(const RenderOptions& o) {
     std::map<std::string, FrameMean> window;
     for (uint32_t f = 0; f < o.frames; ++f) {
       executor.frame({stage.camera, o.firstFrame + f, restartSeed(o.seed, r), false});
+      if (r == 0 && f == 0 && !o.statistics.empty()) {
+        executor.finish();
+        facts.firstFrameSeconds = secondsSince(begin);
+      }
       if (f + o.average >= o.frames) {
         for (const std::string& name : names) window[name].add(executor.read(name));
       }
@@ -194,7 +208,10 @@ void render(const RenderOptions& o) {
     facts.scene = stage.sceneLabel;
     facts.lights = stage.lightsLabel;
     facts.environment = environmentFacts(stage);
-    facts.importSeconds = stage.importSeconds;
+    facts.importTimes = stage.importTimes;
+    facts.accelerationSeconds = scene.accelerationSeconds;
+    facts.uploadSeconds -= facts.accelerationSeconds;
+    facts.peakHostBytes = peakHostBytes();
     facts.prepareSeconds = stage.prepareSeconds;
     facts.sceneBytes = scene.bytes();
     facts.transientBytes = executor.transientBytes();

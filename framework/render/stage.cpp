@@ -67,9 +67,10 @@ bool hasLights(const scene::Scene& scene) {
 
 Stage makeStage(const StageOptions& options, float aspect) {
   Stage s;
-  const auto start = std::chrono::steady_clock::now();
-  s.scene = scene::importGltf(options.scene);
+  s.scene = scene::importGltf(options.scene, {}, &s.importTimes);
+  const auto hash = std::chrono::steady_clock::now();
   s.sceneLabel = fileLabel(options.scene);
+  s.importTimes.read += secondsSince(hash);
   s.lightsLabel = "scene";
   if (options.replaceLights) {
     if (options.lights == 0) throw InputError("--replace-lights needs --lights N");
@@ -84,8 +85,9 @@ Stage makeStage(const StageOptions& options, float aspect) {
     scene::addGeneratedLights(s.scene, options.lights, options.lightSeed);
     s.lightsLabel = fmt::format("{} points, seed {}", options.lights, options.lightSeed);
   }
+  const auto environment = std::chrono::steady_clock::now();
   addEnvironment(options, s);
-  s.importSeconds = secondsSince(start);
+  s.environmentSeconds = secondsSince(environment);
   s.camera = scene::chooseCamera(s.scene, options.camera, aspect);
   const scene::Camera& c = s.camera;
   s.cameraLabel = fmt::format(

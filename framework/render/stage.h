@@ -2,6 +2,7 @@
 #pragma once
 
 #include <weir/gpu/device.h>
+#include <weir/scene/import.h>
 #include <weir/scene/scene.h>
 #include <weir/scene/upload.h>
 
@@ -28,7 +29,8 @@ struct Stage {
   std::string sceneLabel;   ///< file name and content hash: tells pictures of different scenes apart
   std::string lightsLabel;  ///< "scene" or "500 points, seed 1"; then the environment's name and content hash
   std::string cameraLabel;
-  double importSeconds = 0.0, prepareSeconds = 0.0;  ///< import includes the environment
+  scene::ImportTimes importTimes;
+  double environmentSeconds = 0.0, prepareSeconds = 0.0;
 };
 
 /// Reads, lights, arranges. `aspect`: width / height, for a camera that frames the scene. Throws InputError.

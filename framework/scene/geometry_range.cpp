@@ -1,6 +1,7 @@
 #include <weir/scene/geometry_range.h>
 #include <weir/scene/packing.h>
 #include <weir/scene/spatial_sort.h>
+#include <weir/scene/tangent_space.h>
 
 #include <cmath>
 
@@ -13,31 +14,12 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-glm::dvec3 anyOrthogonal(const glm::dvec3& n) {
-  const glm::dvec3 axis = std::abs(n.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-  return glm::normalize(glm::cross(n, axis));
-}
-
 glm::vec3 normaliseOr(const glm::dvec3& v, const glm::vec3& otherwise) {
   const double length = glm::length(v);
   return length > 0.0 && std::isfinite(length) ? glm::vec3(v / length) : otherwise;
 }
 
 }  // namespace
-
-glm::vec4 tangentFromUvs(const glm::vec3 (&p)[3], const glm::vec2 (&uv)[3], const glm::vec3& normal) {
-  const glm::dvec3 n(normal), e1 = glm::dvec3(p[1]) - glm::dvec3(p[0]), e2 = glm::dvec3(p[2]) - glm::dvec3(p[0]);
-  const glm::dvec2 d1 = glm::dvec2(uv[1]) - glm::dvec2(uv[0]), d2 = glm::dvec2(uv[2]) - glm::dvec2(uv[0]);
-  const double det = d1.x * d2.y - d2.x * d1.y;
-  const double sign = det < 0.0 ? -1.0 : 1.0;
-  const glm::dvec3 alongU = (e1 * d2.y - e2 * d1.y) * sign;
-  const glm::dvec3 alongV = (e2 * d1.x - e1 * d2.x) * sign;
-  const glm::dvec3 flat = alongU - n * glm::dot(n, alongU);
-  const double length = glm::length(flat);
-  if (det == 0.0 || !(length > 0.0) || !std::isfinite(length)) return {glm::vec3(anyOrthogonal(n)), 1.0f};
-  const glm::dvec3 t = flat / length;
-  return {glm::vec3(t), glm::dot(glm::cross(n, t), alongV) <= 0.0 ? 1.0f : -1.0f};
-}
 
 bool GeometryRange::hasArea(const uint32_t (&v)[3]) const {
   const glm::dvec3 a(positions_[v[0]]), b(positions_[v[1]]), c(positions_[v[2]]);
@@ -54,7 +36,8 @@ uint32_t GeometryRange::addVertex(const glm::vec3& position, const glm::vec3& no
   return static_cast<uint32_t>(positions_.size() - 1);
 }
 
-void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform) {
+void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform,
+                        std::span<const glm::vec4> cornerTangents) {
   const glm::dmat3 linear(transform);
   const double det = glm::determinant(linear);
   const bool mirrors = det < 0.0;
@@ -64,39 +47,38 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
       (mirrors ? -1.0 : 1.0);
   const size_t count = primitive.positions.size();
   const bool smooth = primitive.normals.size() == count;
-  const bool wantsTangents = materials_[material].normalTexture >= 0;
-  const bool givenTangents = smooth && primitive.tangents.size() == count;
+  const bool givenTangents = smooth && primitive.tangents.size() == count && materials_[material].normalTexture >= 0;
+  const bool splitTangents = !givenTangents && !cornerTangents.empty();
   const auto uvOf = [&](uint32_t i) { return primitive.uv0.empty() ? glm::vec2(0.0f) : primitive.uv0[i]; };
+
+  const auto worldTangent = [&](const glm::vec4& tangent, const glm::vec3& normal) -> glm::vec4 {
+    const glm::dvec3 n(normal), along = linear * glm::dvec3(tangent);
+    return {normaliseOr(along - n * glm::dot(n, along), glm::vec3(anyOrthogonal(n))), mirrors ? -tangent.w : tangent.w};
+  };
 
   // First one vertex each; splitting, where needed, adds more behind them. What ends up unused goes in finish().
   const uint32_t base = static_cast<uint32_t>(positions_.size());
-  positions_.reserve(positions_.size() + count);
-  vertices_.reserve(vertices_.size() + count);
   std::vector<glm::vec3> normals(smooth ? count : 0);
   for (uint32_t i = 0; i < count; ++i) {
     const glm::vec3 position(transform * glm::dvec4(glm::dvec3(primitive.positions[i]), 1.0));
     glm::vec3 normal(0.0f, 0.0f, 1.0f);
     glm::vec4 tangent(0.0f, 0.0f, 1.0f, 1.0f);
     if (smooth) normals[i] = normal = normaliseOr(cofactor * glm::dvec3(primitive.normals[i]), primitive.normals[i]);
-    if (wantsTangents && givenTangents) {
-      const glm::dvec3 n(normal), along = linear * glm::dvec3(primitive.tangents[i]);
-      tangent = {normaliseOr(along - n * glm::dot(n, along), glm::vec3(anyOrthogonal(n))),
-                 mirrors ? -primitive.tangents[i].w : primitive.tangents[i].w};
-    }
+    if (givenTangents) tangent = worldTangent(primitive.tangents[i], normal);
     addVertex(position, normal, tangent, uvOf(i));
   }
 
-  const bool split = !smooth || (wantsTangents && !givenTangents);
+  const bool split = !smooth || splitTangents;
   struct Split {
     uint32_t vertex, next;
   };
   std::vector<Split> splits;
   std::vector<uint32_t> firstSplit(split ? count : 0, kNone);
-  triangles_.reserve(triangles_.size() + primitive.indices.size() / 3);
   for (size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
     // Under a mirroring transform the order of the corners is turned, so that front faces stay counter-clockwise.
-    const uint32_t local[3] = {primitive.indices[t], primitive.indices[t + (mirrors ? 2 : 1)],
-                               primitive.indices[t + (mirrors ? 1 : 2)]};
+    const size_t corner[3] = {t, t + (mirrors ? 2 : 1), t + (mirrors ? 1 : 2)};
+    const uint32_t local[3] = {primitive.indices[corner[0]], primitive.indices[corner[1]],
+                               primitive.indices[corner[2]]};
     PackedTriangle triangle{{base + local[0], base + local[1], base + local[2]}, material};
     if (!hasArea(triangle.v)) {
       ++dropped_;
@@ -109,7 +91,8 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
           normaliseOr(glm::cross(glm::dvec3(p[1]) - glm::dvec3(p[0]), glm::dvec3(p[2]) - glm::dvec3(p[0])), {0, 0, 1});
       for (int k = 0; k < 3; ++k) {
         const glm::vec3 normal = smooth ? normals[local[k]] : face;
-        const glm::vec4 tangent = wantsTangents ? tangentFromUvs(p, uv, normal) : glm::vec4(0.0f, 0.0f, 1.0f, 1.0f);
+        const glm::vec4 tangent =
+            splitTangents ? worldTangent(cornerTangents[corner[k]], normal) : glm::vec4(0.0f, 0.0f, 1.0f, 1.0f);
         const uint32_t packedNormal = packNormal(normal), packedTangent = packTangent(tangent);
         // Corners that agree after packing share a vertex.
         uint32_t at = firstSplit[local[k]];

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace weir::scene {
@@ -16,8 +17,10 @@ class GeometryRange {
   explicit GeometryRange(const std::vector<PackedMaterial>& materials) : materials_(materials) {}
 
   /// Transforms and packs a primitive. Drops triangles without area (in exact terms: their doubled area vector is zero
-  /// or not a finite float) and counts them.
-  void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform);
+  /// or not a finite float) and counts them. `cornerTangents`: those of tangent_space.h, in the primitive's space, for
+  /// a primitive that has none of its own and whose material needs them; else empty.
+  void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform,
+           std::span<const glm::vec4> cornerTangents);
 
   /// Sorts opaque and alpha-tested triangles apart and spatially, renumbers vertices in order of first use, and
   /// appends everything to the scene as its next range. The range is empty afterwards.
@@ -35,10 +38,5 @@ class GeometryRange {
   std::vector<PackedTriangle> triangles_;
   uint64_t dropped_ = 0;
 };
-
-/// Tangent of a triangle from its texture coordinates: xyz along +U orthogonal to `normal`, w so that
-/// cross(normal, tangent)·w points up the image (towards -V), as glTF's normal maps expect.
-/// Any direction orthogonal to the normal where the coordinates are degenerate.
-glm::vec4 tangentFromUvs(const glm::vec3 (&p)[3], const glm::vec2 (&uv)[3], const glm::vec3& normal);
 
 }  // namespace weir::scene

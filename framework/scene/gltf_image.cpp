@@ -14,11 +14,10 @@
 #pragma GCC diagnostic pop
 
 #include <weir/core/error.h>
+#include <weir/core/parallel.h>
 #include <weir/scene/gltf_import.h>
 
-#include <atomic>
 #include <memory>
-#include <thread>
 
 namespace weir::scene {
 namespace {
@@ -112,28 +111,14 @@ void importImages(GltfImport& import) {
     work.push_back({i, bytes});
   }
 
-  std::vector<std::string> reasons(work.size());
-  std::atomic<size_t> next{0};
-  const auto decode = [&] {
-    for (size_t i; (i = next++) < work.size();) {
-      try {
-        std::optional<Image> image = decodeImage(work[i].bytes, import.limits, reasons[i]);
-        if (!image) continue;
-        image->name = std::move(scene.images[work[i].image].name);
-        scene.images[work[i].image] = std::move(*image);
-      } catch (const std::exception& e) {
-        reasons[i] = e.what();
-      }
-    }
-  };
-  const size_t threads = std::min<size_t>(std::max(1u, std::thread::hardware_concurrency()), work.size());
-  {
-    std::vector<std::jthread> pool;
-    for (size_t i = 1; i < threads; ++i) pool.emplace_back(decode);
-    decode();
-  }
-  for (size_t i = 0; i < work.size(); ++i)
-    if (!reasons[i].empty()) import.file.fail("/images/" + std::to_string(work[i].image), reasons[i]);
+  // Each image is its own; of several broken ones the first in the file is reported.
+  parallelFor(work.size(), [&](size_t i) {
+    std::string reason;
+    std::optional<Image> image = decodeImage(work[i].bytes, import.limits, reason);
+    if (!image) import.file.fail("/images/" + std::to_string(work[i].image), reason);
+    image->name = std::move(scene.images[work[i].image].name);
+    scene.images[work[i].image] = std::move(*image);
+  });
 }
 
 }  // namespace weir::scene

@@ -1,6 +1,7 @@
 // What the importer's parts share. Internal to scene/import.
 #pragma once
 
+#include <weir/scene/gltf_compression.h>
 #include <weir/scene/gltf_file.h>
 #include <weir/scene/scene.h>
 
@@ -41,6 +42,8 @@ tinygltf::Model parseStructure(const GltfFile& file);
 class AccessorView {
  public:
   AccessorView(GltfImport& import, int accessor);
+  /// What Draco holds in the accessor's place; `attribute` must outlive the view.
+  AccessorView(const DracoGeometry::Attribute& attribute, uint64_t count, bool normalized);
 
   uint64_t count() const { return count_; }
   int components() const { return components_; }
@@ -52,6 +55,7 @@ class AccessorView {
   uint32_t index(uint64_t i) const;
 
  private:
+  void dropNormalizedWhereMeaningless();
   const uint8_t* element(uint64_t i) const;
 
   std::span<const uint8_t> bytes_;  // empty: all zeros

@@ -2,7 +2,7 @@
 #include <weir/scene/gltf_import.h>
 
 #include <cmath>
-#include <limits>
+#include <map>
 
 namespace weir::scene {
 namespace {
@@ -33,6 +33,7 @@ class MeshImport {
       for (size_t p = 0; p < from.primitives.size(); ++p) {
         place_ = "/meshes/" + std::to_string(m) + "/primitives/" + std::to_string(p);
         Primitive primitive;
+        json_ = &import_.file.json().at("meshes")[m].at("primitives")[p];
         if (importPrimitive(from.primitives[p], primitive)) mesh.primitives.push_back(std::move(primitive));
       }
       import_.scene.meshes.push_back(std::move(mesh));
@@ -40,11 +41,19 @@ class MeshImport {
   }
 
  private:
+  /// From where the primitive's data is: compressed attributes have accessors without bytes.
+  AccessorView accessor(const std::string& name, int index) {
+    if (draco_)
+      if (const auto found = draco_->attributes.find(name); found != draco_->attributes.end())
+        return {found->second, draco_->vertices, import_.model.accessors[index].normalized};
+    return {import_, index};
+  }
+
   std::optional<AccessorView> attribute(const tinygltf::Primitive& from, const std::string& name, int least, int most) {
     const auto found = from.attributes.find(name);
     if (found == from.attributes.end()) return std::nullopt;
-    AccessorView view(import_, found->second);
     const std::string place = place_ + "/attributes/" + name;
+    const AccessorView view = accessor(name, found->second);
     if (view.components() < least || view.components() > most)
       import_.file.fail(place,
                         "has " + std::to_string(view.components()) + " components instead of " + std::to_string(least));
@@ -53,8 +62,37 @@ class MeshImport {
     return view;
   }
 
+  /// A file that refers to the same bytes over and over must not fill the memory: no honest file has more triangles
+  /// than bytes, and a million is free.
+  uint64_t trianglesLeft() const {
+    return std::min<uint64_t>(import_.limits.triangles, (1u << 20) + import_.file.loadedBytes()) - triangles_;
+  }
+  void countTriangles(uint64_t count) {
+    if (count > trianglesLeft())
+      import_.file.fail(place_, "more triangles than " + std::to_string(triangles_ + trianglesLeft()));
+    triangles_ += count;
+  }
+
+  void decompress() {
+    draco_.reset();
+    const auto extensions = json_->find("extensions");
+    if (extensions == json_->end() || !extensions->contains("KHR_draco_mesh_compression")) return;
+    const auto& extension = extensions->at("KHR_draco_mesh_compression");
+    std::string reason;
+    draco_ = decodeDraco(import_.file.bufferView(extension.at("bufferView").get<size_t>()),
+                         extension.at("attributes").get<std::map<std::string, uint32_t>>(), trianglesLeft(), reason);
+    if (!reason.empty()) import_.file.fail(place_ + "/extensions/KHR_draco_mesh_compression", reason);
+  }
+
   /// Three indices a triangle, checked against the number of vertices; the file's, before unused vertices are left out.
   std::vector<uint32_t> readTriangles(const tinygltf::Primitive& from, uint64_t vertices) {
+    if (draco_ && vertices != draco_->vertices)
+      import_.file.fail(place_, std::to_string(vertices) + " positions for " + std::to_string(draco_->vertices) +
+                                    " compressed vertices");
+    if (draco_) {
+      countTriangles(draco_->indices.size() / 3);
+      return std::move(draco_->indices);
+    }
     std::optional<AccessorView> indices;
     if (from.indices >= 0) {
       indices.emplace(import_, from.indices);
@@ -68,13 +106,7 @@ class MeshImport {
     const bool list = from.mode == TINYGLTF_MODE_TRIANGLES;
     if (list && n % 3) import_.warn("a triangle list whose length is no multiple of three ends early");
     const uint64_t count = list ? n / 3 : n < 3 ? 0 : n - 2;
-    // A file that refers to the same bytes over and over must not fill the memory: no honest file has more
-    // triangles than bytes, and a million is free.
-    triangles_ += count;
-    if (triangles_ > import_.limits.triangles || triangles_ > (1u << 20) + import_.file.loadedBytes())
-      import_.file.fail(
-          place_, "more triangles than " + std::to_string(std::min<uint64_t>(import_.limits.triangles,
-                                                                             (1u << 20) + import_.file.loadedBytes())));
+    countTriangles(count);
     const auto at = [&](uint64_t i) {
       const uint64_t index = indices ? indices->index(i) : i;
       if (index >= vertices)
@@ -124,6 +156,7 @@ class MeshImport {
       import_.warn("points and lines are left out");
       return false;
     }
+    decompress();
     const auto positions = attribute(from, "POSITION", 3, 3);
     if (!positions) {
       import_.warn("a primitive without positions is left out");
@@ -220,6 +253,8 @@ class MeshImport {
 
   GltfImport& import_;
   std::string place_;
+  const nlohmann::json* json_ = nullptr;  // of the primitive at hand, as is
+  std::optional<DracoGeometry> draco_;    // what it holds compressed
   uint64_t triangles_ = 0;
   std::vector<uint32_t> remap_;
 };

@@ -12,7 +12,20 @@ namespace {
 
 using nlohmann::json;
 
-enum class Kind { Index, Indices, IndexMap, Integer, Number, Numbers, String, Strings, Bool, Object, Objects };
+enum class Kind {
+  Index,
+  Indices,
+  IndexMap,
+  Integer,
+  Integers,
+  Number,
+  Numbers,
+  String,
+  Strings,
+  Bool,
+  Object,
+  Objects
+};
 
 struct Rule {
   const char* key;
@@ -70,9 +83,21 @@ const std::vector<Rule>& rootRules() {
                                              object("sparse", sparse),
                                              text("name")};
   static const std::vector<Rule> buffer = {integer("byteLength", 1, kMaxSize, true), text("uri"), text("name")};
-  static const std::vector<Rule> bufferView = {
-      index("buffer", "buffers", true), integer("byteOffset", 0, kMaxSize), integer("byteLength", 1, kMaxSize, true),
-      integer("byteStride", 4, 252),    integer("target", 0, kMaxInt),      text("name")};
+  static const std::vector<Rule> meshopt = {index("buffer", "buffers", true),
+                                            integer("byteOffset", 0, kMaxSize),
+                                            integer("byteLength", 1, kMaxSize, true),
+                                            integer("byteStride", 1, 256, true),
+                                            integer("count", 1, kMaxInt, true),
+                                            text("mode", true),
+                                            text("filter")};
+  static const std::vector<Rule> viewExtensions = {object("EXT_meshopt_compression", meshopt)};
+  static const std::vector<Rule> bufferView = {index("buffer", "buffers", true),
+                                               integer("byteOffset", 0, kMaxSize),
+                                               integer("byteLength", 1, kMaxSize, true),
+                                               integer("byteStride", 4, 252),
+                                               integer("target", 0, kMaxInt),
+                                               object("extensions", viewExtensions),
+                                               text("name")};
   static const std::vector<Rule> perspective = {number("yfov", true), number("znear", true), number("aspectRatio"),
                                                 number("zfar")};
   static const std::vector<Rule> camera = {text("type", true), object("perspective", perspective),
@@ -96,12 +121,15 @@ const std::vector<Rule>& rootRules() {
                                              {"doubleSided", Kind::Bool},
                                              object("extensions", materialExtensions),
                                              text("name")};
+  static const std::vector<Rule> draco = {index("bufferView", "bufferViews", true),
+                                          {"attributes", Kind::Integers, true, nullptr, 0, kMaxInt}};
+  static const std::vector<Rule> primitiveExtensions = {object("KHR_draco_mesh_compression", draco)};
   static const std::vector<Rule> primitive = {{"attributes", Kind::IndexMap, true, "accessors"},
                                               index("indices", "accessors"),
                                               index("material", "materials"),
                                               integer("mode", 0, 6),
                                               objects("targets", nothing),
-                                              object("extensions", nothing)};
+                                              object("extensions", primitiveExtensions)};
   static const std::vector<Rule> mesh = {objects("primitives", primitive, true), text("name")};
   static const std::vector<Rule> nodeLight = {integer("light", 0, kMaxInt, true)};
   static const std::vector<Rule> nodeExtensions = {object("KHR_lights_punctual", nodeLight)};
@@ -177,6 +205,10 @@ class Checker {
     if (number < low || number > high) fail(place, what, value);
   }
 
+  static std::string range(const Rule& rule) {
+    return "an integer from " + std::to_string(int64_t(rule.low)) + " to " + std::to_string(int64_t(rule.high));
+  }
+
   void checkIndex(const json& value, const char* target, const std::string& place) const {
     const auto array = file_.json().find(target);
     const size_t size = array != file_.json().end() && array->is_array() ? array->size() : 0;
@@ -207,10 +239,12 @@ class Checker {
         for (const auto& [key, entry] : value.items()) checkIndex(entry, rule.target, place + "/" + key);
         return;
       case Kind::Integer:
-        return checkInteger(
-            value, rule.low, rule.high,
-            "an integer from " + std::to_string(int64_t(rule.low)) + " to " + std::to_string(int64_t(rule.high)),
-            place);
+        return checkInteger(value, rule.low, rule.high, range(rule), place);
+      case Kind::Integers:
+        if (!value.is_object()) fail(place, "an object", value);
+        for (const auto& [key, entry] : value.items())
+          checkInteger(entry, rule.low, rule.high, range(rule), place + "/" + key);
+        return;
       case Kind::Number:
         return checkNumber(value, place);
       case Kind::Numbers:

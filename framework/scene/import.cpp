@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <string_view>
+#include <utility>
 
 namespace weir::scene {
 namespace {
 
-constexpr std::array<std::string_view, 3> kImplemented = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                          "KHR_mesh_quantization"};
+constexpr auto kImplemented =
+    std::to_array<std::string_view>({"EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_lights_punctual",
+                                     "KHR_materials_emissive_strength", "KHR_mesh_quantization"});
 
 bool implemented(const std::string& name) {
   return std::find(kImplemented.begin(), kImplemented.end(), name) != kImplemented.end();
@@ -61,7 +64,14 @@ void GltfImport::warn(const std::string& text) {
   if (scene.warnings.size() < 64) scene.warnings.push_back(text);
 }
 
-Scene importGltf(const std::string& path, const ImportLimits& limits) {
+Scene importGltf(const std::string& path, const ImportLimits& limits, ImportTimes* times) {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last = Clock::now();
+  // Seconds since the last call.
+  const auto lap = [&] {
+    return std::chrono::duration<double>(Clock::now() - std::exchange(last, Clock::now())).count();
+  };
+  ImportTimes spent;
   GltfFile file(path, limits);
   try {
     checkGltfSchema(file);
@@ -74,9 +84,13 @@ Scene importGltf(const std::string& path, const ImportLimits& limits) {
     warnAboutExtensions(import);
     warnAboutAnimation(import);
     importMaterials(import);
+    spent.read = lap();
     importMeshes(import);
     importNodes(import);
+    spent.geometry = lap();
     importImages(import);
+    spent.images = lap();
+    if (times) *times = spent;
     return scene;
   } catch (const InputError&) {
     throw;

@@ -1,10 +1,13 @@
+#include <weir/core/parallel.h>
 #include <weir/scene/gather_lights.h>
 #include <weir/scene/geometry_range.h>
 #include <weir/scene/prepared.h>
 #include <weir/scene/spatial_sort.h>
+#include <weir/scene/tangent_space.h>
 
 #include <algorithm>
 #include <array>
+#include <unordered_map>
 
 namespace weir::scene {
 namespace {
@@ -58,13 +61,41 @@ bool isInstanced(const Scene& scene, const Mesh& mesh, uint64_t uses, const Prep
   return uses >= limits.mergeUses && uses * triangles > limits.mergeTriangles;
 }
 
+/// Tangents of the primitives that lack them although their material has a normal map; once for all their instances.
+class MissingTangents {
+ public:
+  MissingTangents(const Scene& scene, const PreparedScene& prepared, const std::vector<size_t>& uses) {
+    std::vector<std::pair<const Primitive*, std::vector<glm::vec4>*>> work;
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+      for (const Primitive& primitive : scene.meshes[m].primitives) {
+        const size_t count = primitive.positions.size();
+        const bool given = primitive.normals.size() == count && primitive.tangents.size() == count;
+        if (uses[m] > 0 && !given && prepared.materials[packedIndex(prepared, primitive)].normalTexture >= 0)
+          work.emplace_back(&primitive, &tangents_[&primitive]);
+      }
+    parallelFor(work.size(), [&](size_t i) {
+      const Primitive& p = *work[i].first;
+      *work[i].second = cornerTangents(p.positions, p.normals, p.uv0, p.indices);
+    });
+  }
+  /// Empty for any other primitive.
+  std::span<const glm::vec4> of(const Primitive& primitive) const {
+    const auto found = tangents_.find(&primitive);
+    return found == tangents_.end() ? std::span<const glm::vec4>() : std::span<const glm::vec4>(found->second);
+  }
+
+ private:
+  std::unordered_map<const Primitive*, std::vector<glm::vec4>> tangents_;
+};
+
 /// Geometry that goes into two ranges, by the sides of its materials.
 class SidedRanges {
  public:
-  explicit SidedRanges(const std::vector<PackedMaterial>& materials)
-      : materials_(materials), ranges_{GeometryRange(materials), GeometryRange(materials)} {}
+  SidedRanges(const std::vector<PackedMaterial>& materials, const MissingTangents& tangents)
+      : materials_(materials), tangents_(tangents), ranges_{GeometryRange(materials), GeometryRange(materials)} {}
   void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform) {
-    ranges_[(materials_[material].flags & kMaterialDoubleSided) != 0 ? 1 : 0].add(primitive, material, transform);
+    const size_t side = (materials_[material].flags & kMaterialDoubleSided) != 0 ? 1 : 0;
+    ranges_[side].add(primitive, material, transform, tangents_.of(primitive));
   }
   /// Appends both ranges, empty or not; their numbers.
   std::array<uint32_t, 2> finish(PreparedScene& prepared) {
@@ -79,6 +110,7 @@ class SidedRanges {
 
  private:
   const std::vector<PackedMaterial>& materials_;
+  const MissingTangents& tangents_;
   std::array<GeometryRange, 2> ranges_;
 };
 
@@ -116,7 +148,8 @@ PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits) {
   std::vector<char> instanced(scene.meshes.size(), 0);
   for (size_t m = 0; m < scene.meshes.size(); ++m) instanced[m] = isInstanced(scene, scene.meshes[m], uses[m], limits);
 
-  SidedRanges merged(prepared.materials);
+  const MissingTangents tangents(scene, prepared, uses);
+  SidedRanges merged(prepared.materials, tangents);
   for (const Instance& instance : scene.instances)
     if (!instanced[instance.mesh])
       for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
@@ -135,7 +168,7 @@ PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits) {
     if (!instanced[instance.mesh]) continue;
     std::array<uint32_t, 2>& ranges = rangesOf[instance.mesh];
     if (ranges[0] == 0) {
-      SidedRanges own(prepared.materials);
+      SidedRanges own(prepared.materials, tangents);
       for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
         own.add(primitive, packedIndex(prepared, primitive), glm::dmat4(1.0));
       ranges = own.finish(prepared);

@@ -1,6 +1,7 @@
 #include <weir/scene/upload.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <span>
@@ -84,7 +85,9 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   alias_ = gpu::uploadBuffer(device, prepared.aliasTable, kStorage, "scene alias table");
   uploadTextures(scene, prepared);
   if (prepared.traits.environment) environment_ = EnvironmentGpu(device, scene.environment, prepared.environment);
+  const auto start = std::chrono::steady_clock::now();
   if (withAcceleration) acceleration_ = trace::Acceleration(device, prepared, positions_);
+  accelerationSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   makeLayout();
 
   traits = prepared.traits;

@@ -65,7 +65,8 @@ class SceneGpu {
     uint32_t triangles;
     bool doubleSided, flipsWinding;
   };
-  std::vector<Draw> draws;  ///< per instance, for rasterisation
+  double accelerationSeconds = 0.0;  ///< what building the acceleration structures took
+  std::vector<Draw> draws;           ///< per instance, for rasterisation
 
  private:
   void uploadTextures(const Scene& scene, const PreparedScene& prepared);

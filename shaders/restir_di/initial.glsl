@@ -16,7 +16,8 @@ struct Candidate {
   float spread;  // 1 / density of the point: m² on triangles, steradian on the environment, 1 for punctual lights
 };
 
-Candidate drawCandidate(Light light, uvec2 bits, vec3 position, inout Random random) {
+// `error`: of the position, metres.
+Candidate drawCandidate(Light light, uvec2 bits, vec3 position, float error, inout Random random) {
   Candidate c;
 #ifdef SCENE_ENVIRONMENT
   if ((light.kind & kKindMask) == kEnvironment) {
@@ -28,9 +29,10 @@ Candidate drawCandidate(Light light, uvec2 bits, vec3 position, inout Random ran
   const vec2 u = vec2(uniformFloat(bits.x), uniformFloat(bits.y));
   c.place = packPlace(u);
   if (param_triangles == kBySolidAngle && (light.kind & kKindMask) == kTriangle) {
-    const SphericalTriangle t = sphericalTriangle(light.position - position, light.a, light.b);
-    if (t.solidAngle > kLeastSolidAngle) {
-      c.place = placeAt(barycentricsAlong(light, position, sampleSphericalTriangle(t, u)));
+    const SphericalTriangle t = sphericalTriangle(light.position - position, light.a, light.b, error);
+    if (t.near) {
+      // Seen edge on it has no solid angle, and whatever place stands here counts for nothing.
+      if (t.solidAngle > 0.0) c.place = placeAt(barycentricsAlong(light, position, sampleSphericalTriangle(t, u)));
       c.light = evaluateLight(light, c.place, position);
       // dω = cos θ / d² dA turns the uniform density 1/Ω into one per m², at the very point that the 16 bits name.
       const vec3 d = c.light.target - position;
@@ -74,7 +76,7 @@ void run(uvec2 pixel) {
       const uvec4 bits = nextBits4(random);
       const uint chosen = pickMixed(bits.xy, param_uniformShare);
       const Light light = sceneLights[chosen];
-      const Candidate c = drawCandidate(light, bits.zw, surface.position, random);
+      const Candidate c = drawCandidate(light, bits.zw, surface.position, surface.error, random);
       const float target = targetFunction(surface, c.light);
       if (!(target > 0.0)) continue;
       // 1/M · p̂ / p, with p = pdf of the light times density on it.

@@ -146,7 +146,7 @@ TEST(RestirEnvironment, ShadeLooksAlongThePlace) {
   const View view = planeView(16, 16, frontCamera());
   PassTest t("restir_di.Shade");
   show(t, view, scene);
-  t.param("finalVisibility", "false");
+  t.param("visibility", "false");
   std::vector<Reservoir> reservoirs(view.pixels());
   for (size_t i = 0; i < reservoirs.size(); ++i) {
     reservoirs[i].light = 0;

@@ -1,8 +1,6 @@
 // Scenes by other people: counts against their manifest, and malformed files in processes of their own.
 #include "scene_support.h"
 
-#include <weir/scene/geometry_range.h>
-
 #include <sys/resource.h>
 #include <sys/wait.h>
 
@@ -129,30 +127,6 @@ TEST(Corpus, BoomboxEmitsWhereItsTextureDoes) {
   const PreparedScene p = prepareScene(importGltf(folder + "/boombox-spec-gloss/boombox-spec-gloss.glb"));
   EXPECT_GT(p.triangleLights, 0u);
   EXPECT_LT(p.triangleLights, 1000u);  // of 6036
-}
-
-// The files come in pairs: with stored tangents, and without, so that ours are computed.
-TEST(Corpus, ComputedTangentsAgreeWithStoredOnes) {
-  const std::string folder = sceneFolder();
-  if (folder.empty()) GTEST_SKIP() << "no scenes";
-  int compared = 0;
-  for (const auto& file : gltfFiles(fs::path(folder) / "asset-generator/Node_NegativeScale")) {
-    const Scene scene = importGltf(file.string());
-    for (const Mesh& mesh : scene.meshes)
-      for (const Primitive& p : mesh.primitives) {
-        if (p.tangents.empty()) continue;
-        for (size_t t = 0; t < p.indices.size(); t += 3) {
-          const uint32_t* v = &p.indices[t];
-          const glm::vec3 x[3] = {p.positions[v[0]], p.positions[v[1]], p.positions[v[2]]};
-          const glm::vec2 uv[3] = {p.uv0[v[0]], p.uv0[v[1]], p.uv0[v[2]]};
-          const glm::vec4 ours = tangentFromUvs(x, uv, p.normals[v[0]]);
-          EXPECT_GT(glm::dot(glm::vec3(ours), glm::vec3(p.tangents[v[0]])), 0.9f);
-          EXPECT_EQ(ours.w, p.tangents[v[0]].w);
-          ++compared;
-        }
-      }
-  }
-  EXPECT_GT(compared, 0);
 }
 
 /// Loads in a child with limited time and memory. Empty when it ended in a scene or an InputError, else what went

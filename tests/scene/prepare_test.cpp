@@ -206,18 +206,6 @@ TEST(Prepare, FlatNormalsWhereTheFileHasNone) {
   for (const auto& v : p.vertices) EXPECT_EQ(unpackNormal(v.normal), glm::vec3(0, 0, 1));
 }
 
-TEST(Prepare, TangentsFromUvs) {
-  const glm::vec3 n(0, 0, 1);
-  const glm::vec3 p[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  // u to the right, v down the image: upright, so cross(n, t) points up.
-  const glm::vec2 upright[3] = {{0, 1}, {1, 1}, {0, 0}}, mirrored[3] = {{1, 1}, {0, 1}, {1, 0}}, none[3] = {};
-  EXPECT_EQ(tangentFromUvs(p, upright, n), glm::vec4(1, 0, 0, 1));
-  EXPECT_EQ(tangentFromUvs(p, mirrored, n), glm::vec4(-1, 0, 0, -1));
-  const glm::vec4 any = tangentFromUvs(p, none, n);
-  EXPECT_NEAR(glm::length(glm::vec3(any)), 1.0f, 1e-6f);
-  EXPECT_NEAR(glm::dot(glm::vec3(any), n), 0.0f, 1e-6f);
-}
-
 TEST(EmissionMap, MeansAndBlackRegions) {
   // 8 x 8, black but for a white 2 x 2 block at texels (2..3, 4..5).
   Image image;
