@@ -9,7 +9,7 @@
 namespace weir::execute {
 namespace {
 
-// Host sides: scene/prepared.h, scene/lights.h, scene/upload.h, execute/frame_constants.h.
+// Host sides: scene/prepared.h, scene/lights.h, scene/environment.h, scene/upload.h, execute/frame_constants.h.
 constexpr const char* kStructs = R"(
 struct Camera { vec4 origin, forward, right, up; };
 struct Vertex { uint normal, tangent; vec2 uv; };
@@ -63,14 +63,15 @@ std::string buffer(uint32_t binding, const char* access, const char* type, const
 }
 
 struct SceneParts {
-  bool geometry = false, materials = false, lights = false, acceleration = false;
+  bool geometry = false, materials = false, lights = false, environment = false, acceleration = false;
 };
 
 // Alpha tests of rays read materials, and lights read emission textures: those come along.
-SceneParts partsOf(const PassDescription& d) {
+SceneParts partsOf(const PassDescription& d, const scene::SceneTraits& traits) {
   SceneParts p;
   p.acceleration = d.has(Need::SceneAcceleration);
   p.lights = d.has(Need::SceneLights);
+  p.environment = traits.environment && (d.has(Need::SceneEnvironment) || p.lights);
   p.materials = d.has(Need::SceneMaterials) || p.lights || p.acceleration;
   p.geometry = d.has(Need::SceneGeometry) || p.materials;
   return p;
@@ -104,6 +105,15 @@ std::string sceneDeclarations(const SceneParts& parts, uint32_t textures, const 
     s += "#define NEED_SCENE_LIGHTS 1\n#define sceneLightCount frameBlock.lights\n";
     s += buffer(scene::kBindLights, "readonly", "Light", "sceneLights");
     s += buffer(scene::kBindAlias, "readonly", "AliasCell", "sceneAlias");
+  }
+  if (parts.environment) {
+    s += fmt::format(R"(struct EnvironmentCell {{ float threshold; uint alias; float spread; }};
+layout(set = 0, binding = {}, std430) readonly buffer EnvironmentBlock {{
+  uint columns, rows, block, width, height; float unit, rotation; uint pad; EnvironmentCell cells[];
+}} sceneEnvironment;
+layout(set = 0, binding = {}) uniform sampler2D sceneEnvironmentMap;
+)",
+                     uint32_t{scene::kBindEnvironment}, uint32_t{scene::kBindEnvironmentMap});
   }
   return s;
 }
@@ -253,7 +263,7 @@ uint32_t paramBits(const ParamDescription& description, const ParamValue& value)
 
 std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::string& file) {
   const PassDescription& d = *k.pass->description;
-  const SceneParts parts = partsOf(d);
+  const SceneParts parts = partsOf(d, k.traits);
   const bool traces = kind == KernelKind::RayPipeline || kind == KernelKind::RayQuery;
   std::string s = extensions(kind == KernelKind::RayPipeline, kind == KernelKind::RayQuery);
   s += scene::traitDefines(k.traits);

@@ -98,6 +98,18 @@ std::map<std::string, std::string> header(const RenderOptions& o, const Stage& s
   return h;
 }
 
+RunFacts::Environment environmentFacts(const Stage& stage) {
+  const scene::Environment& e = stage.scene.environment;
+  const scene::EnvironmentTable& table = stage.prepared.environment;
+  RunFacts::Environment facts{e.path,     e.width,        e.height, table.columns,
+                              table.rows, table.integral, 0.0,      stage.environmentSeconds};
+  const auto environment = static_cast<uint32_t>(scene::GpuLightKind::Environment);
+  for (const scene::GpuLight& light : stage.prepared.lights) {
+    if (light.kind == environment) facts.share = light.pdf;
+  }
+  return facts;
+}
+
 /// Renders one frame of `executor` with rays counted, after as many as give the history its usual length.
 uint64_t countRays(const gpu::Device& device, shader::Compiler& compiler, Registry& registry,
                    const scene::SceneGpu& scene, const execute::Executor& timed, execute::ExecutorOptions options,
@@ -195,6 +207,7 @@ void render(const RenderOptions& o) {
     facts.trace = trace::backendName(backend);
     facts.scene = stage.sceneLabel;
     facts.lights = stage.lightsLabel;
+    facts.environment = environmentFacts(stage);
     facts.importTimes = stage.importTimes;
     facts.accelerationSeconds = scene.accelerationSeconds;
     facts.uploadSeconds -= facts.accelerationSeconds;

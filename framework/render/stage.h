@@ -16,7 +16,9 @@ struct StageOptions {
   uint32_t lights = 0;  ///< `--lights N`; 0: the scene's own
   uint32_t lightSeed = 1;
   bool replaceLights = false;  ///< drop the scene's own lights, emissive triangles included
-  std::string camera;          ///< as `--camera`
+  std::string environment;     ///< file, .exr or .hdr; empty: none
+  float environmentScale = 1.0f, environmentRotation = 0.0f;  ///< degrees about +Y, counter-clockwise from above
+  std::string camera;                                         ///< as `--camera`
 };
 
 /// A scene as the user asked for it, still plain data.
@@ -25,10 +27,10 @@ struct Stage {
   scene::PreparedScene prepared;
   scene::Camera camera;
   std::string sceneLabel;   ///< file name and content hash: tells pictures of different scenes apart
-  std::string lightsLabel;  ///< "scene" or "500 points, seed 1"
+  std::string lightsLabel;  ///< "scene" or "500 points, seed 1"; then the environment's name and content hash
   std::string cameraLabel;
   scene::ImportTimes importTimes;
-  double prepareSeconds = 0.0;
+  double environmentSeconds = 0.0, prepareSeconds = 0.0;
 };
 
 /// Reads, lights, arranges. `aspect`: width / height, for a camera that frames the scene. Throws InputError.

@@ -42,6 +42,11 @@ std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<
   j["trace"] = facts.trace;
   j["scene"] = facts.scene;
   j["lights"] = facts.lights;
+  if (const RunFacts::Environment& e = facts.environment; !e.file.empty()) {
+    j["environment"] = {
+        {"file", e.file},   {"size", {e.width, e.height}}, {"table", {e.columns, e.rows}}, {"integral", e.integral},
+        {"share", e.share}, {"load_seconds", e.seconds}};
+  }
   j["size"] = {graph.width, graph.height};
   j["frames"] = times.size();
   j["warmup_frames"] = warmUp;

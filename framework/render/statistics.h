@@ -23,6 +23,13 @@ struct RunFacts {
   uint64_t peakHostBytes = 0;      ///< most memory that the process has had
   uint64_t sceneBytes = 0, transientBytes = 0, historyBytes = 0;
   uint64_t rays = 0;  ///< of one frame
+  struct Environment {
+    std::string file;                                       ///< empty: none
+    uint32_t width = 0, height = 0, columns = 0, rows = 0;  ///< of the picture and of the table that picks from it
+    double integral = 0.0;                                  ///< ∫ luminance dω, nit · sr
+    double share = 0.0;                                     ///< of the candidates that are picked by power
+    double seconds = 0.0;                                   ///< to read it
+  } environment;
 };
 
 /// Frames from the first tenth on (at least one) are left out as warm-up when there are three or more.

@@ -96,6 +96,14 @@ void gatherPunctual(const Scene& scene, const PreparedScene& prepared, Gathered&
   }
 }
 
+void gatherEnvironment(const PreparedScene& prepared, Gathered& out) {
+  const double radius = prepared.bounds.radius();
+  GpuLight light;
+  light.kind = static_cast<uint32_t>(GpuLightKind::Environment);
+  // Each direction is a directional light of radiance times steradian lux.
+  keep(out, light, kPi * radius * radius * prepared.environment.integral);
+}
+
 }  // namespace
 
 void gatherLights(const Scene& scene, PreparedScene& prepared) {
@@ -106,6 +114,9 @@ void gatherLights(const Scene& scene, PreparedScene& prepared) {
   }
   prepared.triangleLights = static_cast<uint32_t>(gathered.lights.size());
   gatherPunctual(scene, prepared, gathered);
+  prepared.environment = tabulate(scene.environment);
+  prepared.traits.environment = scene.environment.shines();
+  gatherEnvironment(prepared, gathered);
   prepared.aliasTable = buildAliasTable(gathered.power);
   // What the table of floats really does, not what was asked of it: estimators divide by this.
   const std::vector<double> probabilities = aliasProbabilities(prepared.aliasTable);

@@ -108,6 +108,7 @@ struct PreparedScene {
   std::vector<GpuLight> lights;       ///< those that can emit at all, triangles first
   std::vector<AliasCell> aliasTable;  ///< empty when there are no lights
   uint32_t triangleLights = 0;        ///< how many of `lights` are triangles
+  EnvironmentTable environment;       ///< of Scene::environment, which is the last of `lights`
   SceneTraits traits;
   Bounds bounds;
   uint64_t droppedTriangles = 0;  ///< degenerate or not finite
@@ -124,8 +125,9 @@ struct PreparedScene {
 /// light. Static meshes are merged into world space (winding mended under mirroring transforms) except those that are
 /// shared so often that merging would multiply memory; emissive ones are always merged, so that a light's triangle is
 /// unique. Power of a triangle: π · area · luminance of its mean emission (twice that when double-sided); of a point 4π
-/// · luminance of its intensity; a spot by its cone; a directional by the area of the scene's disc. A mesh is not
-/// merged when `uses >= mergeUses` and `uses * triangles > mergeTriangles`.
+/// · luminance of its intensity; a spot by its cone; a directional by the area of the scene's disc; an environment as
+/// the directionals that it is made of. A mesh is not merged when `uses >= mergeUses` and `uses * triangles >
+/// mergeTriangles`.
 struct PrepareLimits {
   uint64_t mergeTriangles = 2'000'000;
   uint32_t mergeUses = 4;

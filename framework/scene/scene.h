@@ -2,6 +2,8 @@
 // Units: metres, radians, right-handed, +Y up; candela (point, spot), lux (directional), nit (emission).
 #pragma once
 
+#include <weir/scene/environment.h>
+
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -151,6 +153,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<PunctualLight> lights;
+  Environment environment;  ///< not the file's: `--environment`
   std::vector<Camera> cameras;
   std::vector<std::string> warnings;  ///< what the importer left out or mended, once each
   uint32_t animations = 0;            ///< how many the file has

@@ -16,6 +16,7 @@ std::string traitDefines(const SceneTraits& traits) {
   define(traits.dielectricSpecular, "DIELECTRIC_SPECULAR");
   define(traits.unlit, "UNLIT");
   define(traits.f90, "F90");
+  define(traits.environment, "ENVIRONMENT");
   return lines;
 }
 

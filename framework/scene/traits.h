@@ -17,6 +17,7 @@ struct SceneTraits {
   bool dielectricSpecular = false;  ///< SCENE_DIELECTRIC_SPECULAR: some metallic-roughness material's F0 isn't 0.04
   bool unlit = false;               ///< SCENE_UNLIT: some material shows its base colour as it is
   bool f90 = false;                 ///< SCENE_F90: some surface reflects less than all light at grazing angles
+  bool environment = false;         ///< SCENE_ENVIRONMENT: light from all around, scene/environment.h
   bool operator==(const SceneTraits&) const = default;
 };
 

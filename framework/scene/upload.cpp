@@ -70,6 +70,7 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   uvs1_ = gpu::uploadBuffer(device, prepared.uvs1, kStorage, "scene texture coordinates 1");
   speculars_ = gpu::uploadBuffer(device, prepared.speculars, kStorage, "scene specular materials");
   uploadTextures(scene, prepared);
+  if (prepared.traits.environment) environment_ = EnvironmentGpu(device, scene.environment, prepared.environment);
   const auto start = std::chrono::steady_clock::now();
   if (withAcceleration) acceleration_ = trace::Acceleration(device, prepared, positions_);
   accelerationSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -93,7 +94,7 @@ SceneGpu::~SceneGpu() {
 }
 
 uint64_t SceneGpu::bytes() const {
-  uint64_t sum = acceleration_.bytes();
+  uint64_t sum = acceleration_.bytes() + environment_.bytes();
   for (const gpu::Buffer* b : {&positions_, &vertices_, &triangles_, &instances_, &materials_, &lights_, &alias_,
                                &colors_, &uvs1_, &speculars_, &textureUses_}) {
     sum += b->size();
@@ -110,6 +111,10 @@ void SceneGpu::makeLayout() {
   bind(kBindFrame, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1);
   for (uint32_t b = kBindPositions; b <= kBindRays; ++b) bind(b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1);
   if (withAcceleration_) bind(kBindAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1);
+  if (environment_) {
+    bind(kBindEnvironment, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1);
+    bind(kBindEnvironmentMap, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1);
+  }
   bind(kBindTextures, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textureCount());
   VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   info.bindingCount = static_cast<uint32_t>(bindings.size());
@@ -118,8 +123,8 @@ void SceneGpu::makeLayout() {
 
   std::vector<VkDescriptorPoolSize> sizes = {
       {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, kMostSets},
-      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostSets * (kBindRays - kBindPositions + 1)},
-      {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kMostSets * textureCount()}};
+      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostSets * (kBindRays - kBindPositions + 2)},
+      {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kMostSets * (textureCount() + 1)}};
   if (withAcceleration_) sizes.push_back({VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kMostSets});
   VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   pool.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
@@ -166,6 +171,12 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
   acceleration.pAccelerationStructures = &top;
   if (withAcceleration_)
     write(kBindAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1).pNext = &acceleration;
+  const VkDescriptorBufferInfo environmentTable{environment_.table(), 0, VK_WHOLE_SIZE};
+  const VkDescriptorImageInfo environmentMap = environment_.map();
+  if (environment_) {
+    write(kBindEnvironment, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1).pBufferInfo = &environmentTable;
+    write(kBindEnvironmentMap, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1).pImageInfo = &environmentMap;
+  }
   std::vector<VkDescriptorImageInfo> images;
   for (const Texture& t : textures_) {
     images.push_back({t.sampler, images_[t.image].view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});

@@ -4,6 +4,7 @@
 
 #include <weir/gpu/memory.h>
 #include <weir/scene/prepared.h>
+#include <weir/scene/upload_environment.h>
 #include <weir/trace/acceleration.h>
 
 #include <array>
@@ -27,7 +28,9 @@ enum SceneBinding : uint32_t {
   kBindTextureUses,   ///< with uvSets, uvTransforms or mipmaps
   kBindRays,          ///< ray counter
   kBindAcceleration,  ///< only on devices with acceleration structures
-  kBindTextures,      ///< last: an array of as many as the scene has
+  kBindEnvironment,   ///< its table; only in scenes that have one, as the next
+  kBindEnvironmentMap,
+  kBindTextures,  ///< last: an array of as many as the scene has
 };
 
 /// An instance as shaders read it, 80 bytes.
@@ -95,6 +98,7 @@ class SceneGpu {
   std::vector<gpu::Image> images_;
   std::vector<std::pair<PreparedTexture, VkSampler>> samplers_;  // by a texture whose filters and wraps it has
   std::vector<Texture> textures_;
+  EnvironmentGpu environment_;
   trace::Acceleration acceleration_;
   VkDescriptorSetLayout layout_ = VK_NULL_HANDLE;
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
