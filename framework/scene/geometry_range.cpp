@@ -10,6 +10,7 @@ namespace weir::scene {
 namespace {
 
 constexpr uint32_t kNone = 0xffffffffu;
+constexpr int kSplitTries = 32;
 
 bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -107,11 +108,13 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
         const glm::vec4 tangent =
             splitTangents ? worldTangent(cornerTangents[corner[k]], normal) : glm::vec4(0.0f, 0.0f, 1.0f, 1.0f);
         const uint32_t packedNormal = packNormal(normal), packedTangent = packTangent(tangent);
-        // Corners that agree after packing share a vertex.
+        // Corners that agree after packing share a vertex. Only the latest ones are asked: the hub of a fan has as many
+        // as there are triangles.
         uint32_t at = firstSplit[local[k]];
-        while (at != kNone && (vertices_[splits[at].vertex].normal != packedNormal ||
-                               vertices_[splits[at].vertex].tangent != packedTangent))
-          at = splits[at].next;
+        for (int tries = 0; at != kNone && (vertices_[splits[at].vertex].normal != packedNormal ||
+                                            vertices_[splits[at].vertex].tangent != packedTangent);
+             ++tries)
+          at = tries < kSplitTries ? splits[at].next : kNone;
         if (at == kNone) {
           at = static_cast<uint32_t>(splits.size());
           splits.push_back({addVertex(p[k], normal, tangent, uvOf(local[k])), firstSplit[local[k]]});
