@@ -43,12 +43,9 @@ std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<
   j["scene"] = facts.scene;
   j["lights"] = facts.lights;
   if (const RunFacts::Environment& e = facts.environment; !e.file.empty()) {
-    j["environment"] = {{"file", e.file},
-                        {"size", {e.width, e.height}},
-                        {"table", {e.columns, e.rows}},
-                        {"integral", e.integral},
-                        {"share", e.share},
-                        {"load_seconds", e.seconds}};
+    j["environment"] = {
+        {"file", e.file},   {"size", {e.width, e.height}}, {"table", {e.columns, e.rows}}, {"integral", e.integral},
+        {"share", e.share}, {"load_seconds", e.seconds}};
   }
   j["size"] = {graph.width, graph.height};
   j["frames"] = times.size();

@@ -39,7 +39,8 @@ std::vector<double> rowMeans(const Environment& e, uint32_t y) {
   return means;
 }
 
-/// What of a texel of row y three rows' values are worth, steradian: ∫ of their tents times the sine over its latitudes.
+/// What of a texel of row y three rows' values are worth, steradian: ∫ of their tents times the sine over its
+/// latitudes.
 struct RowShares {
   double before = 0.0, here = 0.0, after = 0.0, solidAngle = 0.0;
 };

@@ -14,7 +14,8 @@ void AllLights::describe(PassDescription& d) {
   d.param("samples", 1).range(1, 16).doc("Strata a side on each emissive triangle and of the environment: n² rays");
   d.param("environment", "importance")
       .oneOf({"importance", "uniform"})
-      .doc("Directions by the environment's table and by the BSDF, or uniform over the sphere: noisy, but free of both");
+      .doc(
+          "Directions by the environment's table and by the BSDF, or uniform over the sphere: noisy, but free of both");
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
   d.needs(Need::FrameCamera).needs(Need::FrameIndex);
 }

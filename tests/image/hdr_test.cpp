@@ -73,13 +73,14 @@ TEST(Hdr, RunsByChannel) {
 
 TEST(Hdr, RunsOfTheOlderKind) {
   // One texel, then a run of 2 and one of 1·256, which goes on: 259 texels in all.
-  const Picture p = read(kHead + "-Y 1 +X 259\n" + texel(7, 8, 9, 136) + texel(1, 1, 1, 2) + texel(1, 1, 1, 1) +
-                         std::string(0, ' '));
+  const Picture p =
+      read(kHead + "-Y 1 +X 259\n" + texel(7, 8, 9, 136) + texel(1, 1, 1, 2) + texel(1, 1, 1, 1) + std::string(0, ' '));
   for (uint32_t x = 0; x < 259; ++x) ASSERT_EQ(p.at(x, 0)[1], 8.0f);
 }
 
 TEST(Hdr, ExposureAndColourCorrectionAreUndone) {
-  const std::string head = "#?RGBE\nEXPOSURE= 2.0\nEXPOSURE=4\nCOLORCORR= 1 2 4\nFORMAT=32-bit_rle_rgbe\nSOFTWARE=x\n\n";
+  const std::string head =
+      "#?RGBE\nEXPOSURE= 2.0\nEXPOSURE=4\nCOLORCORR= 1 2 4\nFORMAT=32-bit_rle_rgbe\nSOFTWARE=x\n\n";
   const Picture p = read(head + "-Y 1 +X 1\n" + texel(64, 64, 64, 136));
   EXPECT_EQ(p.at(0, 0)[0], 8.0f);
   EXPECT_EQ(p.at(0, 0)[1], 4.0f);

@@ -131,11 +131,12 @@ TEST(EnvironmentLight, AWallHidesWhatIsBehindIt) {
   b.add(quad({-2, -900, -900}, {-2, -900, 900}, {-2, 900, 900}, {-2, 900, -900}, b.material(finish({0, 0, 0}, 1, 1))));
   b.scene.environment = environmentOf(32, 16, gradient);
   const Lights lights = EnvironmentOracle(b.scene.environment).divided(4);
-  expectMean(b.scene, kAbove, render(b.scene, kAbove, 8, 3), 1, 0.015, [&](const OracleSurface& s, const glm::dvec3& view) {
-    return sumOf(lights, [&](const glm::dvec3& l) {
-      return l.x < 0 && s.position.x > -1.99 ? glm::dvec3(0) : bsdfCos(s, view, l);
-    });
-  });
+  expectMean(b.scene, kAbove, render(b.scene, kAbove, 8, 3), 1, 0.015,
+             [&](const OracleSurface& s, const glm::dvec3& view) {
+               return sumOf(lights, [&](const glm::dvec3& l) {
+                 return l.x < 0 && s.position.x > -1.99 ? glm::dvec3(0) : bsdfCos(s, view, l);
+               });
+             });
 }
 
 // One bright texel is a directional light from there: E = ∫ L dω.
@@ -155,7 +156,8 @@ TEST(EnvironmentLight, ABrightTexelIsADirectionalLight) {
     const glm::dvec3 lux = sumOf(oracle.divided(4), [](const glm::dvec3&) { return glm::dvec3(1); });
     const glm::dvec3 towards = oracle.direction((kX + 0.5) / kWidth, (kY + 0.5) / kHeight);
     // The convention: the middle shows -Z, to the right of it lies +X, rotation is counter-clockwise from above.
-    const double longitude = 2 * kPi * ((kX + 0.5) / kWidth - 0.5) - rotation, height = kPi * (0.5 - (kY + 0.5) / kHeight);
+    const double longitude = 2 * kPi * ((kX + 0.5) / kWidth - 0.5) - rotation,
+                 height = kPi * (0.5 - (kY + 0.5) / kHeight);
     EXPECT_NEAR(towards.x, std::sin(longitude) * std::cos(height), 1e-9);
     EXPECT_NEAR(towards.y, std::sin(height), 1e-9);
     EXPECT_NEAR(towards.z, -std::cos(longitude) * std::cos(height), 1e-9);
@@ -222,8 +224,8 @@ TEST(EnvironmentLight, IsTheBackgroundOfBothGBuffers) {
   const EnvironmentOracle oracle(b.scene.environment);
   constexpr uint32_t kWide = 48;
   // Straight up, straight down from below the floor, and across the seam behind.
-  for (const scene::Camera& camera :
-       {lookAt({0, 1, 0}, {0, 3, 0}, 120), lookAt({0, -1, 0}, {0, -3, 0}, 120), lookAt({0, 1, 0}, {0.1f, 1.2f, 5}, 100)}) {
+  for (const scene::Camera& camera : {lookAt({0, 1, 0}, {0, 3, 0}, 120), lookAt({0, -1, 0}, {0, -3, 0}, 120),
+                                      lookAt({0, 1, 0}, {0.1f, 1.2f, 5}, 100)}) {
     std::vector<glm::vec4> seen[2];
     for (const bool raster : {false, true}) {
       PassTest t(raster ? "gbuffer.Raster" : "gbuffer.RayTraced");
@@ -248,7 +250,8 @@ TEST(EnvironmentLight, IsTheBackgroundOfBothGBuffers) {
 TEST(EnvironmentLight, ShowsWhereThereIsNothingElse) {
   scene::Scene empty;
   empty.environment = environmentOf(4, 2, [](uint32_t, uint32_t) { return glm::vec3(1, 2, 3); });
-  for (const glm::dvec3& c : render(empty, kAbove, 1, 1).color) EXPECT_NEAR(glm::distance(c, glm::dvec3(1, 2, 3)), 0, 1e-3);
+  for (const glm::dvec3& c : render(empty, kAbove, 1, 1).color)
+    EXPECT_NEAR(glm::distance(c, glm::dvec3(1, 2, 3)), 0, 1e-3);
 }
 
 TEST(EnvironmentLight, BlackIsAsIfThereWereNone) {

@@ -48,8 +48,8 @@ TEST(Environment, TexelsKeepTheirValueWhateverTheirRange) {
 
 TEST(Environment, HalfFloatsAreExact) {
   const float smallest = 0x1p-24f, largest = 65504.0f;
-  const Environment e =
-      environmentOf(2, 1, [&](uint32_t x, uint32_t) { return x == 0 ? glm::vec3(largest, 1, 0.1f) : glm::vec3(1, 2, 3); });
+  const Environment e = environmentOf(
+      2, 1, [&](uint32_t x, uint32_t) { return x == 0 ? glm::vec3(largest, 1, 0.1f) : glm::vec3(1, 2, 3); });
   EXPECT_EQ(EnvironmentOracle(e).texel(0, 0).x, largest);
   EXPECT_EQ(EnvironmentOracle(e).texel(1, 0), glm::dvec3(1, 2, 3));
   const Environment dark = environmentOf(1, 1, [&](uint32_t, uint32_t) { return glm::vec3(smallest, 0, 0); });
@@ -67,7 +67,9 @@ TEST(Environment, WhatIsNoRadianceCountsAsBlackAndIsCounted) {
   EXPECT_EQ(oracle.texel(3, 0), glm::dvec3(0, 0, 4));
   EXPECT_FALSE(environmentOf(4, 2, [](uint32_t, uint32_t) { return glm::vec3(-1, 0, 0); }).shines());
   EXPECT_FALSE(environmentOf(4, 2, noise, 0.0f).shines());
-  EXPECT_THROW(environmentOf(1, 1, [](uint32_t, uint32_t) { return glm::vec3(1e30f); }, 1e30f), InputError);
+  EXPECT_THROW(environmentOf(
+                   1, 1, [](uint32_t, uint32_t) { return glm::vec3(1e30f); }, 1e30f),
+               InputError);
 }
 
 TEST(Environment, NothingIsTabulatedWhereNothingShines) {
@@ -136,8 +138,7 @@ TEST(Environment, EveryDirectionWithLightHasADensity) {
     expectCovers(lonely(64, 32, x, y), 128);
   }
   // A sun a million times as bright as the sky.
-  expectCovers(environmentOf(64, 32,
-                             [](uint32_t x, uint32_t y) { return glm::vec3(x == 20 && y == 5 ? 1e6f : 1.0f); }),
+  expectCovers(environmentOf(64, 32, [](uint32_t x, uint32_t y) { return glm::vec3(x == 20 && y == 5 ? 1e6f : 1.0f); }),
                1 << 21);
 }
 
@@ -151,7 +152,8 @@ TEST(Environment, LargeMapsTakeLittleTimeAndMemory) {
   const Environment e = makeEnvironment(picture);
   const auto start = std::chrono::steady_clock::now();
   const EnvironmentTable t = tabulate(e);
-  RecordProperty("seconds", std::to_string(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
+  RecordProperty("seconds",
+                 std::to_string(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
   EXPECT_EQ(t.block, 2u);
   EXPECT_EQ(t.columns, 2048u);
   EXPECT_EQ(t.rows, 1024u);

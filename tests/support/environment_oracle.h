@@ -69,9 +69,7 @@ class EnvironmentOracle {
     const uint32_t code[2] = {bits & 0xffffu, bits >> 16}, steps[2] = {65536 / t.columns, 65536 / t.rows};
     const uint32_t column = code[0] / steps[0], row = code[1] / steps[1];
     const double px = (code[0] % steps[0] + 0.5) / steps[0], py = (code[1] % steps[1] + 0.5) / steps[1];
-    const auto edge = [&](uint32_t i, uint32_t size) {
-      return std::min(double(i) * t.block, double(size)) / size;
-    };
+    const auto edge = [&](uint32_t i, uint32_t size) { return std::min(double(i) * t.block, double(size)) / size; };
     Place p;
     p.cell = row * t.columns + column;
     p.uv.x = glm::mix(edge(column, e_.width), edge(column + 1, e_.width), px);
