@@ -18,6 +18,8 @@ struct Material {
   vec4 baseColor; vec3 emission; float alphaCutoff; float metallic, roughness, normalScale; uint flags;
   int baseColorTexture, metallicRoughnessTexture, normalTexture, emissiveTexture;
 };
+struct Specular { vec3 f0; float weight; int colorTexture, weightTexture; uvec2 pad; };
+struct TextureUse { vec4 linear; vec2 offset; uint uvSet; float texelLevel; };
 struct Light { vec3 position; uint kind; vec3 a; uint triangle; vec3 b; float area; vec3 radiance; float pdf; };
 struct AliasCell { float threshold; uint alias; };
 layout(set = 0, binding = 0, std140) uniform FrameBlock {
@@ -75,7 +77,7 @@ SceneParts partsOf(const PassDescription& d, const scene::SceneTraits& traits) {
   return p;
 }
 
-std::string sceneDeclarations(const SceneParts& parts, uint32_t textures) {
+std::string sceneDeclarations(const SceneParts& parts, uint32_t textures, const scene::SceneTraits& traits) {
   std::string s;
   if (parts.geometry) {
     s += "#define NEED_SCENE_GEOMETRY 1\n#define sceneInstanceCount frameBlock.instances\n";
@@ -91,6 +93,13 @@ std::string sceneDeclarations(const SceneParts& parts, uint32_t textures) {
     s += buffer(scene::kBindMaterials, "readonly", "Material", "sceneMaterials");
     s += fmt::format("layout(set = 0, binding = {}) uniform sampler2D sceneTextures[{}];\n",
                      uint32_t{scene::kBindTextures}, textures);
+    if (traits.vertexColors) s += buffer(scene::kBindColors, "readonly", "uvec2", "sceneColors");
+    if (traits.uvSets) s += buffer(scene::kBindUvs1, "readonly", "vec2", "sceneUvs1");
+    if (traits.specularGlossiness || traits.dielectricSpecular)
+      s += buffer(scene::kBindSpeculars, "readonly", "Specular", "sceneSpeculars");
+    if (traits.uvSets || traits.uvTransforms || traits.mipmaps)
+      s += "#define SCENE_TEXTURE_USES 1\n" +
+           buffer(scene::kBindTextureUses, "readonly", "TextureUse", "sceneTextureUses");
   }
   if (parts.lights) {
     s += "#define NEED_SCENE_LIGHTS 1\n#define sceneLightCount frameBlock.lights\n";
@@ -259,7 +268,7 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
   std::string s = extensions(kind == KernelKind::RayPipeline, kind == KernelKind::RayQuery);
   s += scene::traitDefines(k.traits);
   s += kStructs;
-  s += sceneDeclarations(parts, k.sceneTextures);
+  s += sceneDeclarations(parts, k.sceneTextures, k.traits);
   if (traces) {
     s += fmt::format("layout(set = 0, binding = {}) uniform accelerationStructureEXT sceneAcceleration;\n",
                      uint32_t{scene::kBindAcceleration});
@@ -308,7 +317,7 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
 
 std::string hitShaderSource(const std::string& file, uint32_t sceneTextures, const scene::SceneTraits& traits) {
   return extensions(true, false) + scene::traitDefines(traits) + kStructs +
-         sceneDeclarations({.geometry = true, .materials = true}, sceneTextures) +
+         sceneDeclarations({.geometry = true, .materials = true}, sceneTextures, traits) +
          fmt::format("#include \"trace/{}\"\n", file);
 }
 

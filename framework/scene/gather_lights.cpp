@@ -34,8 +34,9 @@ void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered
     if (perMaterial[m].empty()) continue;
     const PackedMaterial& material = prepared.materials[m];
     std::unique_ptr<EmissionMap> map;
+    PreparedTexture texture;
     if (material.emissiveTexture >= 0) {
-      const PreparedTexture& texture = prepared.textures[material.emissiveTexture];
+      texture = prepared.textures[material.emissiveTexture];
       map = std::make_unique<EmissionMap>(scene.images[texture.image], texture.wrapS, texture.wrapT, material.emission);
     }
     const bool doubleSided = material.flags & kMaterialDoubleSided;
@@ -53,7 +54,7 @@ void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered
       light.area = static_cast<float>(area);
       light.radiance = material.emission;
       if (!(light.area > 0.0f) || !std::isfinite(light.area)) continue;
-      const auto uv = [&](int k) { return glm::vec2(prepared.vertices[v[k]].u, prepared.vertices[v[k]].v); };
+      const auto uv = [&](int k) { return prepared.textureUv(texture, v[k]); };
       const double mean = map ? map->mean(uv(0), uv(1), uv(2)) : luminance(material.emission);
       keep(out, light, kPi * area * mean * (doubleSided ? 2.0 : 1.0));
     }

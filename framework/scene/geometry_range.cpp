@@ -3,12 +3,14 @@
 #include <weir/scene/spatial_sort.h>
 #include <weir/scene/tangent_space.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace weir::scene {
 namespace {
 
 constexpr uint32_t kNone = 0xffffffffu;
+constexpr int kSplitTries = 32;
 
 bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -34,6 +36,18 @@ uint32_t GeometryRange::addVertex(const glm::vec3& position, const glm::vec3& no
   positions_.push_back(position);
   vertices_.push_back({packNormal(normal), packTangent(tangent), uv.x, uv.y});
   return static_cast<uint32_t>(positions_.size() - 1);
+}
+
+void GeometryRange::addExtras(const Primitive& primitive, uint32_t i) {
+  if (scene_.traits.vertexColors) {
+    const glm::vec4 c = primitive.colors.empty() ? glm::vec4(1.0f) : primitive.colors[i];
+    const auto pack = [](float low, float high) {
+      const auto code = [](float v) { return static_cast<uint32_t>(std::clamp(v, 0.0f, 1.0f) * 65535.0f + 0.5f); };
+      return code(low) | (code(high) << 16);
+    };
+    colors_.push_back({pack(c.r, c.g), pack(c.b, c.a)});
+  }
+  if (scene_.traits.uvSets) uvs1_.push_back(primitive.uv1.empty() ? glm::vec2(0.0f) : primitive.uv1[i]);
 }
 
 void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform,
@@ -66,6 +80,7 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
     if (smooth) normals[i] = normal = normaliseOr(cofactor * glm::dvec3(primitive.normals[i]), primitive.normals[i]);
     if (givenTangents) tangent = worldTangent(primitive.tangents[i], normal);
     addVertex(position, normal, tangent, uvOf(i));
+    addExtras(primitive, i);
   }
 
   const bool split = !smooth || splitTangents;
@@ -86,7 +101,6 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
     }
     if (split) {
       const glm::vec3 p[3] = {positions_[triangle.v[0]], positions_[triangle.v[1]], positions_[triangle.v[2]]};
-      const glm::vec2 uv[3] = {uvOf(local[0]), uvOf(local[1]), uvOf(local[2])};
       const glm::vec3 face =
           normaliseOr(glm::cross(glm::dvec3(p[1]) - glm::dvec3(p[0]), glm::dvec3(p[2]) - glm::dvec3(p[0])), {0, 0, 1});
       for (int k = 0; k < 3; ++k) {
@@ -94,14 +108,17 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
         const glm::vec4 tangent =
             splitTangents ? worldTangent(cornerTangents[corner[k]], normal) : glm::vec4(0.0f, 0.0f, 1.0f, 1.0f);
         const uint32_t packedNormal = packNormal(normal), packedTangent = packTangent(tangent);
-        // Corners that agree after packing share a vertex.
+        // Corners that agree after packing share a vertex. Only the latest ones are asked: the hub of a fan has as many
+        // as there are triangles.
         uint32_t at = firstSplit[local[k]];
-        while (at != kNone && (vertices_[splits[at].vertex].normal != packedNormal ||
-                               vertices_[splits[at].vertex].tangent != packedTangent))
-          at = splits[at].next;
+        for (int tries = 0; at != kNone && (vertices_[splits[at].vertex].normal != packedNormal ||
+                                            vertices_[splits[at].vertex].tangent != packedTangent);
+             ++tries)
+          at = tries < kSplitTries ? splits[at].next : kNone;
         if (at == kNone) {
           at = static_cast<uint32_t>(splits.size());
-          splits.push_back({addVertex(p[k], normal, tangent, uv[k]), firstSplit[local[k]]});
+          splits.push_back({addVertex(p[k], normal, tangent, uvOf(local[k])), firstSplit[local[k]]});
+          addExtras(primitive, local[k]);
           firstSplit[local[k]] = at;
         }
         triangle.v[k] = splits[at].vertex;
@@ -135,6 +152,8 @@ void GeometryRange::finish(PreparedScene& scene) {
           now = static_cast<uint32_t>(scene.positions.size()) - base;
           scene.positions.push_back(positions_[v]);
           scene.vertices.push_back(vertices_[v]);
+          if (!colors_.empty()) scene.colors.push_back(colors_[v]);
+          if (!uvs1_.empty()) scene.uvs1.push_back(uvs1_[v]);
         }
         v = base + now;
       }
@@ -145,6 +164,8 @@ void GeometryRange::finish(PreparedScene& scene) {
   scene.droppedTriangles += dropped_;
   positions_.clear();
   vertices_.clear();
+  colors_.clear();
+  uvs1_.clear();
   triangles_.clear();
   dropped_ = 0;
 }

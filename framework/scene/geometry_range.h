@@ -13,8 +13,8 @@ namespace weir::scene {
 /// Triangles that will share an acceleration structure, in the space that the transforms given to add() lead to.
 class GeometryRange {
  public:
-  /// `materials` are the packed ones; the primitive's own index into them is `material`.
-  explicit GeometryRange(const std::vector<PackedMaterial>& materials) : materials_(materials) {}
+  /// `scene` has its materials and traits; a primitive's own index into the packed materials is `material`.
+  explicit GeometryRange(const PreparedScene& scene) : scene_(scene), materials_(scene.materials) {}
 
   /// Transforms and packs a primitive. Drops triangles without area (in exact terms: their doubled area vector is zero
   /// or not a finite float) and counts them. `cornerTangents`: those of tangent_space.h, in the primitive's space, for
@@ -31,10 +31,15 @@ class GeometryRange {
  private:
   bool hasArea(const uint32_t (&v)[3]) const;
   uint32_t addVertex(const glm::vec3& position, const glm::vec3& normal, const glm::vec4& tangent, const glm::vec2& uv);
+  /// The parts of vertex i that only some scenes have; call it after addVertex().
+  void addExtras(const Primitive& primitive, uint32_t i);
 
+  const PreparedScene& scene_;
   const std::vector<PackedMaterial>& materials_;
   std::vector<glm::vec3> positions_;
   std::vector<PackedVertex> vertices_;
+  std::vector<PackedColor> colors_;  // beside vertices_ where the scene has them
+  std::vector<glm::vec2> uvs1_;      // likewise
   std::vector<PackedTriangle> triangles_;
   uint64_t dropped_ = 0;
 };

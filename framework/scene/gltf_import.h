@@ -5,6 +5,7 @@
 #include <weir/scene/gltf_file.h>
 #include <weir/scene/scene.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -21,13 +22,18 @@
 
 namespace weir::scene {
 
+/// Extensions that give a texture another kind of image; the plain source, if there is one, is used instead.
+inline constexpr std::array<const char*, 4> kOtherImageFormats = {"KHR_texture_basisu", "EXT_texture_webp",
+                                                                  "MSFT_texture_dds", "EXT_texture_avif"};
+
 /// State of one import. The parts below fill `scene` in the order: materials, meshes, nodes, images.
 struct GltfImport {
   GltfFile& file;
   const tinygltf::Model& model;
   const ImportLimits& limits;
   Scene& scene;
-  std::vector<int> materialUvSet;  ///< per material: the UV set that its textures read
+  /// Per material: the file's UV sets that become uv0 and uv1, -1: none.
+  std::vector<std::array<int, 2>> materialUvSets;
 
   /// Adds a warning unless it was given already.
   void warn(const std::string& text);

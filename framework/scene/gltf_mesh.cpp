@@ -163,7 +163,6 @@ class MeshImport {
       return false;
     }
     if (positions->count() >= kUnused) import_.file.fail(place_, "more than 32 bits of vertices");
-    if (from.attributes.contains("COLOR_0")) import_.warn("vertex colours are not implemented and ignored");
     if (from.attributes.contains("JOINTS_0")) import_.warn("skins are not animated yet: meshes keep their rest pose");
     to.material = from.material;
     to.indices = readTriangles(from, positions->count());
@@ -179,7 +178,11 @@ class MeshImport {
       }
     readNormals(from, used, positions->count(), to);
     readTangents(from, used, positions->count(), to);
-    readUvs(from, used, positions->count(), to);
+    const std::array<int, 2> sets =
+        from.material >= 0 ? import_.materialUvSets[from.material] : std::array<int, 2>{0, -1};
+    readUvs(from, sets[0], used, positions->count(), to.uv0);
+    readUvs(from, sets[1], used, positions->count(), to.uv1);
+    readColors(from, used, positions->count(), to);
     return true;
   }
 
@@ -234,21 +237,42 @@ class MeshImport {
     }
   }
 
-  void readUvs(const tinygltf::Primitive& from, const std::vector<uint32_t>& used, uint64_t vertices, Primitive& to) {
-    const int set = from.material >= 0 ? import_.materialUvSet[from.material] : 0;
+  void readUvs(const tinygltf::Primitive& from, int set, const std::vector<uint32_t>& used, uint64_t vertices,
+               std::vector<glm::vec2>& to) {
     const std::string name = "TEXCOORD_" + std::to_string(set);
     const auto uvs = attribute(from, name, 2, 2);
     if (!uvs) return;
     sameCount(*uvs, vertices, name.c_str());
-    to.uv0.reserve(used.size());
+    to.reserve(used.size());
     for (uint32_t i : used) {
       glm::vec2 uv(uvs->value(i, 0), uvs->value(i, 1));
       if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
         import_.warn("some texture coordinates are not finite and taken as 0");
         uv = glm::vec2(0.0f);
       }
-      to.uv0.push_back(uv);
+      to.push_back(uv);
     }
+  }
+
+  void readColors(const tinygltf::Primitive& from, const std::vector<uint32_t>& used, uint64_t vertices,
+                  Primitive& to) {
+    const auto colors = attribute(from, "COLOR_0", 3, 4);
+    if (!colors) return;
+    sameCount(*colors, vertices, "COLOR_0");
+    to.colors.reserve(used.size());
+    bool white = true;
+    for (uint32_t i : used) {
+      glm::vec4 color(1.0f);
+      for (int c = 0; c < colors->components(); ++c) color[c] = colors->value(i, c);
+      for (int c = 0; c < 4; ++c)
+        if (!(color[c] >= 0.0f && color[c] <= 1.0f)) {
+          import_.warn("vertex colours outside of 0 to 1 are clamped");
+          color[c] = color[c] > 0.0f ? 1.0f : 0.0f;
+        }
+      white = white && color == glm::vec4(1.0f);
+      to.colors.push_back(color);
+    }
+    if (white) to.colors.clear();  // says nothing, and would cost every lookup of the scene
   }
 
   GltfImport& import_;

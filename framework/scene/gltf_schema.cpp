@@ -104,13 +104,27 @@ const std::vector<Rule>& rootRules() {
                                            object("orthographic", nothing), text("name")};
   static const std::vector<Rule> image = {index("bufferView", "bufferViews"), text("uri"), text("mimeType"),
                                           text("name")};
+  static const std::vector<Rule> textureTransform = {numbers("offset", 2), number("rotation"), numbers("scale", 2),
+                                                     integer("texCoord", 0, kMaxInt)};
+  static const std::vector<Rule> textureInfoExtensions = {object("KHR_texture_transform", textureTransform)};
   static const std::vector<Rule> textureInfo = {index("index", "textures", true), integer("texCoord", 0, kMaxInt),
-                                                number("scale"), number("strength"), object("extensions", nothing)};
+                                                number("scale"), number("strength"),
+                                                object("extensions", textureInfoExtensions)};
   static const std::vector<Rule> metallic = {numbers("baseColorFactor", 4), number("metallicFactor"),
                                              number("roughnessFactor"), object("baseColorTexture", textureInfo),
                                              object("metallicRoughnessTexture", textureInfo)};
   static const std::vector<Rule> strength = {number("emissiveStrength")};
-  static const std::vector<Rule> materialExtensions = {object("KHR_materials_emissive_strength", strength)};
+  static const std::vector<Rule> glossiness = {numbers("diffuseFactor", 4), numbers("specularFactor", 3),
+                                               number("glossinessFactor"), object("diffuseTexture", textureInfo),
+                                               object("specularGlossinessTexture", textureInfo)};
+  static const std::vector<Rule> ior = {number("ior")};
+  static const std::vector<Rule> specular = {number("specularFactor"), numbers("specularColorFactor", 3),
+                                             object("specularTexture", textureInfo),
+                                             object("specularColorTexture", textureInfo)};
+  static const std::vector<Rule> materialExtensions = {
+      object("KHR_materials_emissive_strength", strength), object("KHR_materials_ior", ior),
+      object("KHR_materials_pbrSpecularGlossiness", glossiness), object("KHR_materials_specular", specular),
+      object("KHR_materials_unlit", nothing)};
   static const std::vector<Rule> material = {object("pbrMetallicRoughness", metallic),
                                              object("normalTexture", textureInfo),
                                              object("occlusionTexture", textureInfo),
@@ -145,7 +159,8 @@ const std::vector<Rule>& rootRules() {
                                          text("name")};
   static const std::vector<Rule> sampler = {integer("magFilter", 0, kMaxInt), integer("minFilter", 0, kMaxInt),
                                             integer("wrapS", 0, kMaxInt), integer("wrapT", 0, kMaxInt), text("name")};
-  static const std::vector<Rule> texture = {index("sampler", "samplers"), index("source", "images"), text("name")};
+  static const std::vector<Rule> texture = {index("sampler", "samplers"), index("source", "images"),
+                                            object("extensions", nothing), text("name")};
   static const std::vector<Rule> scene = {{"nodes", Kind::Indices, false, "nodes"}, text("name")};
   static const std::vector<Rule> asset = {text("version", true), text("minVersion")};
   static const std::vector<Rule> spot = {number("innerConeAngle"), number("outerConeAngle")};

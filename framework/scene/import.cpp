@@ -11,9 +11,10 @@
 namespace weir::scene {
 namespace {
 
-constexpr auto kImplemented =
-    std::to_array<std::string_view>({"EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_lights_punctual",
-                                     "KHR_materials_emissive_strength", "KHR_mesh_quantization"});
+constexpr auto kImplemented = std::to_array<std::string_view>(
+    {"EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_emissive_strength",
+     "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_unlit",
+     "KHR_mesh_quantization", "KHR_texture_transform"});
 
 bool implemented(const std::string& name) {
   return std::find(kImplemented.begin(), kImplemented.end(), name) != kImplemented.end();
@@ -39,8 +40,14 @@ void refuseRequiredExtensions(const GltfFile& file) {
 void warnAboutExtensions(GltfImport& import) {
   const auto used = import.file.json().find("extensionsUsed");
   if (used == import.file.json().end()) return;
+  // Textures say themselves what becomes of another kind of image.
+  const auto saysItself = [&](const std::string& name) {
+    return std::find(kOtherImageFormats.begin(), kOtherImageFormats.end(), name) != kOtherImageFormats.end() &&
+           std::any_of(import.model.textures.begin(), import.model.textures.end(),
+                       [&](const tinygltf::Texture& t) { return t.extensions.contains(name); });
+  };
   for (const auto& name : *used)
-    if (!implemented(name.get<std::string>()))
+    if (!implemented(name.get<std::string>()) && !saysItself(name.get<std::string>()))
       import.warn("extension " + name.get<std::string>() + " is not implemented and ignored");
 }
 

@@ -1,6 +1,7 @@
 #include <weir/core/parallel.h>
 #include <weir/scene/gather_lights.h>
 #include <weir/scene/geometry_range.h>
+#include <weir/scene/prepare_materials.h>
 #include <weir/scene/prepared.h>
 #include <weir/scene/spatial_sort.h>
 #include <weir/scene/tangent_space.h>
@@ -11,40 +12,6 @@
 
 namespace weir::scene {
 namespace {
-
-/// Index of the texture as a slot uses it; equal uses share one.
-int32_t prepareTexture(const Scene& scene, const TextureSlot& slot, bool srgb, PreparedScene& prepared) {
-  if (!slot) return -1;
-  const Texture& from = scene.textures[slot.texture];
-  if (from.image < 0 || scene.images[from.image].rgba.empty()) return -1;
-  const PreparedTexture texture{from.image, srgb, from.wrapS, from.wrapT, from.magFilter, from.minFilter};
-  const auto same = [&](const PreparedTexture& t) {
-    return t.image == texture.image && t.srgb == texture.srgb && t.wrapS == texture.wrapS && t.wrapT == texture.wrapT &&
-           t.magFilter == texture.magFilter && t.minFilter == texture.minFilter;
-  };
-  const auto found = std::find_if(prepared.textures.begin(), prepared.textures.end(), same);
-  if (found != prepared.textures.end()) return static_cast<int32_t>(found - prepared.textures.begin());
-  prepared.textures.push_back(texture);
-  return static_cast<int32_t>(prepared.textures.size() - 1);
-}
-
-PackedMaterial packMaterial(const Scene& scene, const Material& from, PreparedScene& prepared) {
-  PackedMaterial m;
-  m.baseColor = from.baseColor;
-  m.emission = from.emission;
-  m.alphaCutoff = from.alphaCutoff;
-  m.metallic = from.metallic;
-  m.roughness = from.roughness;
-  m.normalScale = from.normalScale;
-  m.flags = (from.alphaMode == AlphaMode::Mask ? kMaterialMask : 0u) |
-            (from.alphaMode == AlphaMode::Blend ? kMaterialBlend : 0u) |
-            (from.doubleSided ? kMaterialDoubleSided : 0u) | (from.isEmissive() ? kMaterialEmissive : 0u);
-  m.baseColorTexture = prepareTexture(scene, from.baseColorTexture, true, prepared);
-  m.metallicRoughnessTexture = prepareTexture(scene, from.metallicRoughnessTexture, false, prepared);
-  m.normalTexture = prepareTexture(scene, from.normalTexture, false, prepared);
-  m.emissiveTexture = from.isEmissive() ? prepareTexture(scene, from.emissiveTexture, true, prepared) : -1;
-  return m;
-}
 
 /// The importer's -1 is the default material, which is packed last.
 uint32_t packedIndex(const PreparedScene& prepared, const Primitive& primitive) {
@@ -61,6 +28,14 @@ bool isInstanced(const Scene& scene, const Mesh& mesh, uint64_t uses, const Prep
   return uses >= limits.mergeUses && uses * triangles > limits.mergeTriangles;
 }
 
+/// Where each vertex of a primitive reads a texture; empty: the primitive has no such coordinates.
+std::vector<glm::vec2> coordinatesOf(const Primitive& primitive, const PreparedTexture& texture) {
+  std::vector<glm::vec2> uvs = texture.uvSet == 1 ? primitive.uv1 : primitive.uv0;
+  if (!texture.transform.isIdentity())
+    for (glm::vec2& uv : uvs) uv = texture.transform(uv);
+  return uvs;
+}
+
 /// Tangents of the primitives that lack them although their material has a normal map; once for all their instances.
 class MissingTangents {
  public:
@@ -75,7 +50,8 @@ class MissingTangents {
       }
     parallelFor(work.size(), [&](size_t i) {
       const Primitive& p = *work[i].first;
-      *work[i].second = cornerTangents(p.positions, p.normals, p.uv0, p.indices);
+      const PreparedTexture& map = prepared.textures[prepared.materials[packedIndex(prepared, p)].normalTexture];
+      *work[i].second = cornerTangents(p.positions, p.normals, coordinatesOf(p, map), p.indices);
     });
   }
   /// Empty for any other primitive.
@@ -91,8 +67,10 @@ class MissingTangents {
 /// Geometry that goes into two ranges, by the sides of its materials.
 class SidedRanges {
  public:
-  SidedRanges(const std::vector<PackedMaterial>& materials, const MissingTangents& tangents)
-      : materials_(materials), tangents_(tangents), ranges_{GeometryRange(materials), GeometryRange(materials)} {}
+  SidedRanges(const PreparedScene& prepared, const MissingTangents& tangents)
+      : materials_(prepared.materials),
+        tangents_(tangents),
+        ranges_{GeometryRange(prepared), GeometryRange(prepared)} {}
   void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform) {
     const size_t side = (materials_[material].flags & kMaterialDoubleSided) != 0 ? 1 : 0;
     ranges_[side].add(primitive, material, transform, tangents_.of(primitive));
@@ -139,9 +117,9 @@ void placeInstances(const std::vector<PreparedInstance>& unsorted, PreparedScene
 
 PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits) {
   PreparedScene prepared;
-  for (const Material& material : scene.materials)
-    prepared.materials.push_back(packMaterial(scene, material, prepared));
-  prepared.materials.push_back(packMaterial(scene, Material{}, prepared));
+  prepareMaterials(scene, prepared);
+  for (const Mesh& mesh : scene.meshes)
+    for (const Primitive& primitive : mesh.primitives) prepared.traits.vertexColors |= !primitive.colors.empty();
 
   std::vector<size_t> uses(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) ++uses[instance.mesh];
@@ -149,7 +127,7 @@ PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits) {
   for (size_t m = 0; m < scene.meshes.size(); ++m) instanced[m] = isInstanced(scene, scene.meshes[m], uses[m], limits);
 
   const MissingTangents tangents(scene, prepared, uses);
-  SidedRanges merged(prepared.materials, tangents);
+  SidedRanges merged(prepared, tangents);
   for (const Instance& instance : scene.instances)
     if (!instanced[instance.mesh])
       for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
@@ -168,7 +146,7 @@ PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits) {
     if (!instanced[instance.mesh]) continue;
     std::array<uint32_t, 2>& ranges = rangesOf[instance.mesh];
     if (ranges[0] == 0) {
-      SidedRanges own(prepared.materials, tangents);
+      SidedRanges own(prepared, tangents);
       for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
         own.add(primitive, packedIndex(prepared, primitive), glm::dmat4(1.0));
       ranges = own.finish(prepared);

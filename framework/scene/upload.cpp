@@ -3,30 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <span>
-#include <tuple>
 
 namespace weir::scene {
 namespace {
 
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr uint32_t kMostSets = 64;  // executors over one scene at a time
-
-VkSamplerAddressMode addressMode(Wrap wrap) {
-  switch (wrap) {
-    case Wrap::MirroredRepeat:
-      return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
-    case Wrap::ClampToEdge:
-      return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    default:
-      return VK_SAMPLER_ADDRESS_MODE_REPEAT;
-  }
-}
-
-VkFilter filter(Filter f) {
-  return f == Filter::Nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
-}
 
 std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vector<SceneGpu::Draw>& draws) {
   std::vector<GpuInstance> result;
@@ -83,6 +66,9 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   materials_ = gpu::uploadBuffer(device, prepared.materials, kStorage, "scene materials");
   lights_ = gpu::uploadBuffer(device, prepared.lights, kStorage, "scene lights");
   alias_ = gpu::uploadBuffer(device, prepared.aliasTable, kStorage, "scene alias table");
+  colors_ = gpu::uploadBuffer(device, prepared.colors, kStorage, "scene vertex colours");
+  uvs1_ = gpu::uploadBuffer(device, prepared.uvs1, kStorage, "scene texture coordinates 1");
+  speculars_ = gpu::uploadBuffer(device, prepared.speculars, kStorage, "scene specular materials");
   uploadTextures(scene, prepared);
   if (prepared.traits.environment) environment_ = EnvironmentGpu(device, scene.environment, prepared.environment);
   const auto start = std::chrono::steady_clock::now();
@@ -102,51 +88,19 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
 }
 
 SceneGpu::~SceneGpu() {
-  for (VkSampler sampler : samplers_) vkDestroySampler(device_->handle(), sampler, nullptr);
+  for (const auto& [texture, sampler] : samplers_) vkDestroySampler(device_->handle(), sampler, nullptr);
   vkDestroyDescriptorPool(device_->handle(), pool_, nullptr);
   vkDestroyDescriptorSetLayout(device_->handle(), layout_, nullptr);
 }
 
 uint64_t SceneGpu::bytes() const {
   uint64_t sum = acceleration_.bytes() + environment_.bytes();
-  for (const gpu::Buffer* b : {&positions_, &vertices_, &triangles_, &instances_, &materials_, &lights_, &alias_}) {
+  for (const gpu::Buffer* b : {&positions_, &vertices_, &triangles_, &instances_, &materials_, &lights_, &alias_,
+                               &colors_, &uvs1_, &speculars_, &textureUses_}) {
     sum += b->size();
   }
   for (const gpu::Image& image : images_) sum += image.bytes();
   return sum;
-}
-
-void SceneGpu::uploadTextures(const Scene& scene, const PreparedScene& prepared) {
-  std::map<std::pair<int, bool>, uint32_t> imageIndex;
-  std::map<std::tuple<Wrap, Wrap, Filter, Filter>, VkSampler> samplerOf;
-  const Image white{"white", 1, 1, {255, 255, 255, 255}};
-  auto add = [&](const PreparedTexture& t) {
-    const auto [entry, fresh] = imageIndex.try_emplace({t.image, t.srgb}, static_cast<uint32_t>(images_.size()));
-    if (fresh) {
-      const Image& source = t.image < 0 ? white : scene.images[t.image];
-      gpu::ImageDesc desc;
-      desc.width = source.width;
-      desc.height = source.height;
-      desc.format = t.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
-      images_.push_back(
-          gpu::uploadImage(*device_, desc, std::as_bytes(std::span(source.rgba)), "texture " + source.name));
-    }
-    VkSampler& sampler = samplerOf[{t.wrapS, t.wrapT, t.magFilter, t.minFilter}];
-    if (sampler == VK_NULL_HANDLE) {
-      VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-      info.magFilter = filter(t.magFilter);
-      info.minFilter = filter(t.minFilter);
-      info.addressModeU = addressMode(t.wrapS);
-      info.addressModeV = addressMode(t.wrapT);
-      info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-      info.maxLod = VK_LOD_CLAMP_NONE;
-      gpu::check(vkCreateSampler(device_->handle(), &info, nullptr, &sampler), "vkCreateSampler");
-      samplers_.push_back(sampler);
-    }
-    textures_.push_back({entry->second, sampler});
-  };
-  for (const PreparedTexture& t : prepared.textures) add(t);
-  if (textures_.empty()) add(PreparedTexture{});  // so that the array is never empty
 }
 
 void SceneGpu::makeLayout() {
@@ -190,10 +144,11 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
   gpu::check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set), "vkAllocateDescriptorSets");
 
   const VkDescriptorBufferInfo frame{frameConstants.handle(), 0, slotBytes};
-  const std::array<VkBuffer, 8> handles = {positions_.handle(), vertices_.handle(),  triangles_.handle(),
-                                           instances_.handle(), materials_.handle(), lights_.handle(),
-                                           alias_.handle(),     rayCounter.handle()};
-  std::array<VkDescriptorBufferInfo, 8> buffers{};
+  const std::array handles = {positions_.handle(), vertices_.handle(),  triangles_.handle(),   instances_.handle(),
+                              materials_.handle(), lights_.handle(),    alias_.handle(),       colors_.handle(),
+                              uvs1_.handle(),      speculars_.handle(), textureUses_.handle(), rayCounter.handle()};
+  static_assert(handles.size() == kBindRays - kBindPositions + 1);
+  std::array<VkDescriptorBufferInfo, handles.size()> buffers{};
   std::vector<VkWriteDescriptorSet> writes;
   auto write = [&](uint32_t binding, VkDescriptorType type, uint32_t count) -> VkWriteDescriptorSet& {
     VkWriteDescriptorSet w{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};

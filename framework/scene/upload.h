@@ -22,6 +22,10 @@ enum SceneBinding : uint32_t {
   kBindMaterials,
   kBindLights,
   kBindAlias,
+  kBindColors,        ///< with the trait vertexColors
+  kBindUvs1,          ///< with uvSets
+  kBindSpeculars,     ///< with one of the specular traits
+  kBindTextureUses,   ///< with uvSets, uvTransforms or mipmaps
   kBindRays,          ///< ray counter
   kBindAcceleration,  ///< only on devices with acceleration structures
   kBindEnvironment,   ///< its table; only in scenes that have one, as the next
@@ -36,6 +40,16 @@ struct GpuInstance {
   uint32_t firstDrawn = 0;  ///< number of triangles in the instances before it
 };
 static_assert(sizeof(GpuInstance) == 80);
+
+/// How a texture of the array is read, 32 bytes.
+struct GpuTextureUse {
+  glm::vec4 linear{1, 0, 0, 1};  ///< columns of UvTransform::linear
+  glm::vec2 offset{0.0f};
+  uint32_t uvSet = 0;
+  /// log2 of how many texels a unit of length in untransformed coordinates is, as the mean over directions by area.
+  float texelLevel = 0.0f;
+};
+static_assert(sizeof(GpuTextureUse) == 32);
 
 class SceneGpu {
  public:
@@ -70,17 +84,19 @@ class SceneGpu {
 
  private:
   void uploadTextures(const Scene& scene, const PreparedScene& prepared);
+  VkSampler samplerOf(const PreparedTexture& texture);
   void makeLayout();
 
   const gpu::Device* device_;
   bool withAcceleration_;
-  gpu::Buffer positions_, vertices_, triangles_, instances_, materials_, lights_, alias_;
+  gpu::Buffer positions_, vertices_, triangles_, instances_, materials_, lights_, alias_, colors_, uvs1_, speculars_,
+      textureUses_;
   struct Texture {
     uint32_t image;
     VkSampler sampler;
   };
   std::vector<gpu::Image> images_;
-  std::vector<VkSampler> samplers_;
+  std::vector<std::pair<PreparedTexture, VkSampler>> samplers_;  // by a texture whose filters and wraps it has
   std::vector<Texture> textures_;
   EnvironmentGpu environment_;
   trace::Acceleration acceleration_;
