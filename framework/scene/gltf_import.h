@@ -20,13 +20,17 @@
 
 namespace weir::scene {
 
-/// State of one import. The parts below fill `scene` in the order: materials, meshes, nodes, images.
+/// State of one import. The parts below fill `scene` in the order: materials, meshes, animation, nodes, images.
 struct GltfImport {
   GltfFile& file;
   const tinygltf::Model& model;
   const ImportLimits& limits;
   Scene& scene;
   std::vector<int> materialUvSet;  ///< per material: the UV set that its textures read
+  uint64_t animationValues = 0;    ///< numbers read so far for morph targets and animations
+
+  /// Counts such numbers. A file that refers to the same bytes over and over must not fill the memory.
+  void countValues(uint64_t count, const std::string& place);
 
   /// Adds a warning unless it was given already.
   void warn(const std::string& text);
@@ -63,8 +67,17 @@ class AccessorView {
   uint64_t elementSize_ = 0;
 };
 
+/// Influences (JOINTS_n, WEIGHTS_n) and morph targets of a primitive's vertices; `used` says which of the file's
+/// `vertices` those are, `place` where in the JSON the primitive is.
+void importInfluences(GltfImport& import, const tinygltf::Primitive& from, const std::vector<uint32_t>& used,
+                      uint64_t vertices, const std::string& place, Primitive& to);
+void importTargets(GltfImport& import, const std::vector<uint32_t>& used, uint64_t vertices, const std::string& place,
+                   Primitive& to);
+
 void importMaterials(GltfImport& import);
 void importMeshes(GltfImport& import);
+/// Scene::nodes as the file lists them, its skins and clips; instances, lights and cameras come with importNodes.
+void importAnimation(GltfImport& import);
 void importNodes(GltfImport& import);
 /// Decodes, on several threads, the images that some material uses; the others stay empty (width 0).
 void importImages(GltfImport& import);

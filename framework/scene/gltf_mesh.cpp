@@ -131,7 +131,6 @@ class MeshImport {
     }
     if (positions->count() >= kUnused) import_.file.fail(place_, "more than 32 bits of vertices");
     if (from.attributes.contains("COLOR_0")) import_.warn("vertex colours are not implemented and ignored");
-    if (from.attributes.contains("JOINTS_0")) import_.warn("skins are not animated yet: meshes keep their rest pose");
     to.material = from.material;
     to.indices = readTriangles(from, positions->count());
     const std::vector<uint32_t> used = compact(to.indices, positions->count());
@@ -147,6 +146,8 @@ class MeshImport {
     readNormals(from, used, positions->count(), to);
     readTangents(from, used, positions->count(), to);
     readUvs(from, used, positions->count(), to);
+    importInfluences(import_, from, used, positions->count(), place_, to);
+    importTargets(import_, used, positions->count(), place_, to);
     return true;
   }
 

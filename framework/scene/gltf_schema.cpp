@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-enum class Kind { Index, Indices, IndexMap, Integer, Number, Numbers, String, Strings, Bool, Object, Objects };
+enum class Kind { Index, Indices, IndexMap, IndexMaps, Integer, Number, Numbers, String, Strings, Bool, Object, Objects };
 
 struct Rule {
   const char* key;
@@ -100,9 +100,20 @@ const std::vector<Rule>& rootRules() {
                                               index("indices", "accessors"),
                                               index("material", "materials"),
                                               integer("mode", 0, 6),
-                                              objects("targets", nothing),
+                                              {"targets", Kind::IndexMaps, false, "accessors"},
                                               object("extensions", nothing)};
-  static const std::vector<Rule> mesh = {objects("primitives", primitive, true), text("name")};
+  static const std::vector<Rule> mesh = {objects("primitives", primitive, true), numbers("weights", 0), text("name")};
+  static const std::vector<Rule> skin = {{"joints", Kind::Indices, true, "nodes"},
+                                         index("inverseBindMatrices", "accessors"),
+                                         index("skeleton", "nodes"),
+                                         text("name")};
+  static const std::vector<Rule> animationTarget = {index("node", "nodes"), text("path", true)};
+  static const std::vector<Rule> channel = {integer("sampler", 0, kMaxInt, true),
+                                            object("target", animationTarget, true)};
+  static const std::vector<Rule> animationSampler = {index("input", "accessors", true),
+                                                     index("output", "accessors", true), text("interpolation")};
+  static const std::vector<Rule> animation = {objects("channels", channel, true),
+                                              objects("samplers", animationSampler, true), text("name")};
   static const std::vector<Rule> nodeLight = {integer("light", 0, kMaxInt, true)};
   static const std::vector<Rule> nodeExtensions = {object("KHR_lights_punctual", nodeLight)};
   static const std::vector<Rule> node = {index("camera", "cameras"),
@@ -113,6 +124,7 @@ const std::vector<Rule>& rootRules() {
                                          numbers("rotation", 4),
                                          numbers("scale", 3),
                                          numbers("translation", 3),
+                                         numbers("weights", 0),
                                          object("extensions", nodeExtensions),
                                          text("name")};
   static const std::vector<Rule> sampler = {integer("magFilter", 0, kMaxInt), integer("minFilter", 0, kMaxInt),
@@ -131,7 +143,7 @@ const std::vector<Rule>& rootRules() {
                                          object("extensions", rootExtensions),
                                          index("scene", "scenes"),
                                          objects("accessors", accessor),
-                                         objects("animations", nothing),
+                                         objects("animations", animation),
                                          objects("buffers", buffer),
                                          objects("bufferViews", bufferView),
                                          objects("cameras", camera),
@@ -141,7 +153,7 @@ const std::vector<Rule>& rootRules() {
                                          objects("nodes", node),
                                          objects("samplers", sampler),
                                          objects("scenes", scene),
-                                         objects("skins", nothing),
+                                         objects("skins", skin),
                                          objects("textures", texture)};
   return root;
 }
@@ -205,6 +217,13 @@ class Checker {
       case Kind::IndexMap:
         if (!value.is_object()) fail(place, "an object", value);
         for (const auto& [key, entry] : value.items()) checkIndex(entry, rule.target, place + "/" + key);
+        return;
+      case Kind::IndexMaps:
+        checkArray(value, place);
+        for (size_t i = 0; i < value.size(); ++i) {
+          if (!value[i].is_object()) fail(at(i), "an object", value[i]);
+          for (const auto& [key, entry] : value[i].items()) checkIndex(entry, rule.target, at(i) + "/" + key);
+        }
         return;
       case Kind::Integer:
         return checkInteger(

@@ -2,6 +2,8 @@
 // Units: metres, radians, right-handed, +Y up; candela (point, spot), lux (directional), nit (emission).
 #pragma once
 
+#include <weir/scene/animation.h>
+
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
@@ -60,6 +62,9 @@ struct Primitive {
   std::vector<glm::vec2> uv0;
   std::vector<uint32_t> indices;  ///< three a triangle, each below positions.size()
   int material = -1;              ///< -1: glTF's default material
+  uint32_t influencesPerVertex = 0;   ///< a multiple of four; 0: no skin can deform it
+  std::vector<Influence> influences;  ///< so many a vertex
+  std::vector<MorphTarget> targets;
 };
 
 struct Mesh {
@@ -67,11 +72,12 @@ struct Mesh {
   std::vector<Primitive> primitives;
 };
 
-/// One use of a mesh in the world; the node hierarchy is already multiplied out.
+/// One use of a mesh in the world; the node hierarchy is already multiplied out, at rest.
 struct Instance {
   int mesh = -1;
   int node = -1;
   glm::mat4 toWorld{1.0f};
+  int skin = -1;  ///< where its mesh's primitives have influences, these place them, and toWorld doesn't
 };
 
 enum class LightKind : uint8_t { Point, Spot, Directional };
@@ -85,6 +91,7 @@ struct PunctualLight {
   glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< the way the light travels, unit length
   float range = 0.0f;                      ///< metres; 0: unbounded
   float innerCone = 0.0f, outerCone = 0.785398163f;
+  int node = -1;  ///< that it hangs on; -1: none
 };
 
 struct Camera {
@@ -93,6 +100,7 @@ struct Camera {
   glm::vec3 forward{0.0f, 0.0f, -1.0f};  ///< unit length
   glm::vec3 up{0.0f, 1.0f, 0.0f};        ///< unit length, orthogonal to forward
   float verticalFov = 0.785398163f;      ///< radians
+  int node = -1;                         ///< that it hangs on; -1: none
 };
 
 struct Bounds {
@@ -114,10 +122,12 @@ struct Scene {
   std::vector<PunctualLight> lights;
   std::vector<Camera> cameras;
   std::vector<std::string> warnings;  ///< what the importer left out or mended, once each
-  uint32_t animations = 0;            ///< how many the file has
+  std::vector<Node> nodes;            ///< all of the file's, whether or not its scene shows them
+  std::vector<Skin> skins;
+  std::vector<Clip> clips;
 };
 
-/// Bounds of all instances, in the world.
+/// Bounds of all instances, in the world, at rest.
 Bounds worldBounds(const Scene& scene);
 
 /// A camera that frames the bounds, looking along -Z from the front, 45° high.
