@@ -17,7 +17,7 @@ VkDescriptorType descriptorType(const PortType& type) {
 
 PassRuntime::PassRuntime(Shared& shared, const graph::CompiledPass& pass)
     : shared_(shared), compiled_(pass), pass_(shared.registry->create(pass.type)) {
-  interface_ = {shared.graph, &pass, {}, {}, shared.countRays, shared.scene->textureCount()};
+  interface_ = {shared.graph, &pass, {}, {}, shared.countRays, shared.scene->textureCount(), shared.scene->traits};
   const PassDescription& d = *pass.description;
   push_.assign(pushBytes(d) / 4, 0);
   push_[3] = pass.stream;
@@ -99,7 +99,7 @@ const HitShaders& PassRuntime::hitShaders() {
   auto compile = [&](const char* file, shader::Stage stage) {
     shader::CompileRequest r;
     r.name = std::string("prelude of ") + file;
-    r.source = hitShaderSource(file, shared_.scene->textureCount());
+    r.source = hitShaderSource(file, shared_.scene->textureCount(), shared_.scene->traits);
     r.stage = stage;
     r.includeFolders.push_back(commonShaderFolder().string());
     return shared_.compiler->compile(r).spirv;

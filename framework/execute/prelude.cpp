@@ -247,6 +247,7 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
   const SceneParts parts = partsOf(d);
   const bool traces = kind == KernelKind::RayPipeline || kind == KernelKind::RayQuery;
   std::string s = extensions(kind == KernelKind::RayPipeline, kind == KernelKind::RayQuery);
+  s += scene::traitDefines(k.traits);
   s += kStructs;
   s += sceneDeclarations(parts, k.sceneTextures);
   if (traces) {
@@ -295,8 +296,9 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
   return s;
 }
 
-std::string hitShaderSource(const std::string& file, uint32_t sceneTextures) {
-  return extensions(true, false) + kStructs + sceneDeclarations({.geometry = true, .materials = true}, sceneTextures) +
+std::string hitShaderSource(const std::string& file, uint32_t sceneTextures, const scene::SceneTraits& traits) {
+  return extensions(true, false) + scene::traitDefines(traits) + kStructs +
+         sceneDeclarations({.geometry = true, .materials = true}, sceneTextures) +
          fmt::format("#include \"trace/{}\"\n", file);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <weir/graph/compile.h>
+#include <weir/scene/traits.h>
 #include <weir/trace/acceleration.h>
 
 #include <string>
@@ -26,6 +27,7 @@ struct KernelInterface {
   std::vector<std::pair<std::string, bool>> textures;  ///< name, 3D
   bool countRays = false;
   uint32_t sceneTextures = 1;
+  scene::SceneTraits traits;
 };
 
 enum class KernelKind : uint8_t { Compute, RayPipeline, RayQuery, Vertex, Fragment };
@@ -34,7 +36,7 @@ enum class KernelKind : uint8_t { Compute, RayPipeline, RayQuery, Vertex, Fragme
 std::string kernelSource(const KernelInterface& interface, KernelKind kind, const std::string& file);
 
 /// Full source of one of the tracing interface's own hit and miss shaders: the scene, no ports.
-std::string hitShaderSource(const std::string& file, uint32_t sceneTextures);
+std::string hitShaderSource(const std::string& file, uint32_t sceneTextures, const scene::SceneTraits& traits);
 
 /// Parameters in push-constant order after the launch's four words; bools and enums take 4 bytes like numbers, texts
 /// none.

@@ -100,6 +100,9 @@ void gatherPunctual(const Scene& scene, const PreparedScene& prepared, Gathered&
 void gatherLights(const Scene& scene, PreparedScene& prepared) {
   Gathered gathered;
   gatherTriangles(scene, prepared, gathered);
+  for (const GpuLight& light : gathered.lights) {
+    prepared.traits.texturedLights |= (light.kind & kLightTextured) != 0;
+  }
   prepared.triangleLights = static_cast<uint32_t>(gathered.lights.size());
   gatherPunctual(scene, prepared, gathered);
   prepared.aliasTable = buildAliasTable(gathered.power);

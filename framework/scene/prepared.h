@@ -4,6 +4,7 @@
 
 #include <weir/scene/lights.h>
 #include <weir/scene/scene.h>
+#include <weir/scene/traits.h>
 
 #include <cstdint>
 #include <string>
@@ -80,6 +81,7 @@ struct PreparedScene {
   std::vector<GpuLight> lights;       ///< those that can emit at all, triangles first
   std::vector<AliasCell> aliasTable;  ///< empty when there are no lights
   uint32_t triangleLights = 0;        ///< how many of `lights` are triangles
+  SceneTraits traits;
   Bounds bounds;
   uint64_t droppedTriangles = 0;  ///< degenerate or not finite
 };

@@ -86,6 +86,7 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   if (withAcceleration) acceleration_ = trace::Acceleration(device, prepared, positions_);
   makeLayout();
 
+  traits = prepared.traits;
   lightCount = static_cast<uint32_t>(prepared.lights.size());
   instanceCount = static_cast<uint32_t>(prepared.instances.size());
   largestSide = longestSide(prepared);

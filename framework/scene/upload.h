@@ -51,6 +51,8 @@ class SceneGpu {
   uint32_t textureCount() const { return static_cast<uint32_t>(textures_.size()); }
   bool hasAcceleration() const { return withAcceleration_; }
 
+  SceneTraits traits;  ///< shaders are compiled for them
+
   // What the frame constants say of the scene.
   uint32_t lightCount = 0, instanceCount = 0;
   float diameter = 0.0f;  ///< of the bounding sphere, metres; at least twice the float error of its place

@@ -60,7 +60,9 @@ LightSample evaluateTriangle(Light light, vec2 barycentrics, vec3 position) {
     return s;
   }
   s.radiance = light.radiance * (cosine / d2);
+#ifdef SCENE_TEXTURED_LIGHTS
   if ((light.kind & kLightTextured) != 0u) s.radiance *= emissionTexture(light.triangle, barycentrics);
+#endif
   return s;
 }
 

@@ -23,9 +23,11 @@ LightSample sampleBySolidAngle(Light light, SphericalTriangle t, vec2 u, vec3 po
   const bool lit = facing > 0.0 || ((light.kind & kLightDoubleSided) != 0u && facing < 0.0);
   s.target = position + s.direction * (dot(normal, light.position - position) / dot(normal, s.direction));
   s.radiance = lit ? light.radiance : vec3(0.0);
+#ifdef SCENE_TEXTURED_LIGHTS
   if (lit && (light.kind & kLightTextured) != 0u) {
     s.radiance *= emissionTexture(light.triangle, clamp(barycentricsAlong(light, position, s.direction), 0.0, 1.0));
   }
+#endif
   return s;
 }
 
