@@ -42,6 +42,7 @@ std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<
   j["trace"] = facts.trace;
   j["scene"] = facts.scene;
   j["lights"] = facts.lights;
+  j["animation"] = facts.animation;
   j["size"] = {graph.width, graph.height};
   j["frames"] = times.size();
   j["warmup_frames"] = warmUp;
@@ -53,6 +54,8 @@ std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<
     j["passes"].push_back(pass);
   }
   j["frame"]["gpu_ms"] = timed ? toJson(quantiles(collect([](const auto& t) { return t.gpuFrame; }))) : Json();
+  // What it takes to bring a moving scene to its state; no time at all when it is still.
+  j["frame"]["scene_gpu_ms"] = timed ? toJson(quantiles(collect([](const auto& t) { return t.gpuScene; }))) : Json();
   j["frame"]["cpu_ms"] = quantiles(collect([](const auto& t) { return t.cpuFrame; })).median;
   j["memory"] = {{"transient_bytes", facts.transientBytes},
                  {"history_bytes", facts.historyBytes},

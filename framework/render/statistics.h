@@ -15,7 +15,7 @@ struct Quantiles {
 Quantiles quantiles(std::vector<double> values);
 
 struct RunFacts {
-  std::string device, driver, trace, scene, lights;
+  std::string device, driver, trace, scene, lights, animation;
   double importSeconds = 0.0, prepareSeconds = 0.0, uploadSeconds = 0.0, compileSeconds = 0.0;
   uint64_t sceneBytes = 0, transientBytes = 0, historyBytes = 0;
   uint64_t rays = 0;  ///< of one frame

@@ -11,8 +11,8 @@
 
 namespace weir::scene {
 
-/// A node of the hierarchy; the index into Scene::nodes is glTF's own. Its transform relative to its parent is T · R · S,
-/// or `matrix` where the file gives one (such nodes can't be animated).
+/// A node of the hierarchy; the index into Scene::nodes is glTF's own. Its transform relative to its parent is T · R ·
+/// S, or `matrix` where the file gives one (such nodes can't be animated).
 struct Node {
   std::string name;
   int parent = -1;
@@ -32,7 +32,8 @@ struct Channel {
   AnimatedPath path = AnimatedPath::Translation;
   Interpolation interpolation = Interpolation::Linear;
   std::vector<float> times;  ///< seconds, strictly increasing, at least one
-  /// `width` numbers a key; three times as many with CubicSpline: in-tangent, value, out-tangent. Quaternions are x y z w.
+  /// `width` numbers a key; three times as many with CubicSpline: in-tangent, value, out-tangent. Quaternions are x y z
+  /// w.
   std::vector<float> values;
   uint32_t width = 3;
 };

@@ -42,13 +42,15 @@ glm::vec4 tangentFromUvs(const glm::vec3 (&p)[3], const glm::vec2 (&uv)[3], cons
 bool GeometryRange::hasArea(const uint32_t (&v)[3]) const {
   const glm::dvec3 a(positions_[v[0]]), b(positions_[v[1]]), c(positions_[v[2]]);
   const glm::dvec3 twice = glm::cross(b - a, c - a);
+  if (deforms_) return finite(a) && finite(b) && finite(c);
   // In double, products of float differences can neither overflow nor, above 1e-23 m, vanish.
   const double area = 0.5 * glm::length(twice);
   return finite(twice) && area > 0.0 && std::isfinite(static_cast<float>(area));
 }
 
 uint32_t GeometryRange::addVertex(const glm::vec3& position, const glm::vec3& normal, const glm::vec4& tangent,
-                                  const glm::vec2& uv) {
+                                  const glm::vec2& uv, uint32_t source) {
+  sources_.push_back({primitives_, source});
   positions_.push_back(position);
   vertices_.push_back({packNormal(normal), packTangent(tangent), uv.x, uv.y});
   return static_cast<uint32_t>(positions_.size() - 1);
@@ -83,7 +85,7 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
       tangent = {normaliseOr(along - n * glm::dot(n, along), glm::vec3(anyOrthogonal(n))),
                  mirrors ? -primitive.tangents[i].w : primitive.tangents[i].w};
     }
-    addVertex(position, normal, tangent, uvOf(i));
+    addVertex(position, normal, tangent, uvOf(i), i);
   }
 
   const bool split = !smooth || (wantsTangents && !givenTangents);
@@ -112,13 +114,13 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
         const glm::vec4 tangent = wantsTangents ? tangentFromUvs(p, uv, normal) : glm::vec4(0.0f, 0.0f, 1.0f, 1.0f);
         const uint32_t packedNormal = packNormal(normal), packedTangent = packTangent(tangent);
         // Corners that agree after packing share a vertex.
-        uint32_t at = firstSplit[local[k]];
+        uint32_t at = deforms_ && !smooth ? kNone : firstSplit[local[k]];
         while (at != kNone && (vertices_[splits[at].vertex].normal != packedNormal ||
                                vertices_[splits[at].vertex].tangent != packedTangent))
           at = splits[at].next;
         if (at == kNone) {
           at = static_cast<uint32_t>(splits.size());
-          splits.push_back({addVertex(p[k], normal, tangent, uv[k]), firstSplit[local[k]]});
+          splits.push_back({addVertex(p[k], normal, tangent, uv[k], local[k]), firstSplit[local[k]]});
           firstSplit[local[k]] = at;
         }
         triangle.v[k] = splits[at].vertex;
@@ -126,9 +128,10 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
     }
     triangles_.push_back(triangle);
   }
+  ++primitives_;
 }
 
-void GeometryRange::finish(PreparedScene& scene) {
+void GeometryRange::finish(PreparedScene& scene, std::vector<VertexSource>* sources) {
   TriangleRange range;
   range.first = static_cast<uint32_t>(scene.triangles.size());
   const uint32_t base = static_cast<uint32_t>(scene.positions.size());
@@ -152,6 +155,7 @@ void GeometryRange::finish(PreparedScene& scene) {
           now = static_cast<uint32_t>(scene.positions.size()) - base;
           scene.positions.push_back(positions_[v]);
           scene.vertices.push_back(vertices_[v]);
+          if (sources != nullptr) sources->push_back(sources_[v]);
         }
         v = base + now;
       }
@@ -160,6 +164,8 @@ void GeometryRange::finish(PreparedScene& scene) {
   }
   scene.ranges.push_back(range);
   scene.droppedTriangles += dropped_;
+  primitives_ = 0;
+  sources_.clear();
   positions_.clear();
   vertices_.clear();
   triangles_.clear();

@@ -48,8 +48,8 @@ class AnimationImport {
   void run() {
     for (const auto& node : import_.model.nodes) import_.scene.nodes.push_back(importNode(import_, node));
     importWeights();
-    each("skins", [&](const nlohmann::json& from, const std::string& place) { importSkin(from, place); });
-    each("animations", [&](const nlohmann::json& from, const std::string& place) { importClip(from, place); });
+    each("skins", [&](const auto& from, size_t i) { importSkin(from, "/skins/" + std::to_string(i)); });
+    each("animations", [&](const auto& from, size_t i) { importClip(from, "/animations/" + std::to_string(i)); });
   }
 
  private:
@@ -57,7 +57,7 @@ class AnimationImport {
   void each(const char* key, F&& f) {
     const auto array = json_.find(key);
     if (array == json_.end()) return;
-    for (size_t i = 0; i < array->size(); ++i) f((*array)[i], "/" + std::string(key) + "/" + std::to_string(i));
+    for (size_t i = 0; i < array->size(); ++i) f((*array)[i], i);
   }
 
   /// A node's own weights go before its mesh's.
@@ -70,8 +70,7 @@ class AnimationImport {
         to[i] = std::isfinite(weight) ? weight : 0.0f;
       }
     };
-    each("nodes", [&](const nlohmann::json& from, const std::string& place) {
-      const size_t n = std::stoul(place.substr(place.rfind('/') + 1));
+    each("nodes", [&](const nlohmann::json& from, size_t n) {
       const int mesh = import_.model.nodes[n].mesh;
       if (mesh < 0) return;
       std::vector<float>& weights = import_.scene.nodes[n].weights;
@@ -149,7 +148,8 @@ class AnimationImport {
       return;
     }
     if (channel.path != AnimatedPath::Weights && node.matrix) {
-      import_.warn("an animated node has a matrix instead of translation, rotation and scale; the animation replaces it");
+      import_.warn(
+          "an animated node has a matrix instead of translation, rotation and scale; the animation replaces it");
       node.matrix.reset();
     }
     const std::string interpolation = sampler.value("interpolation", "LINEAR");
@@ -210,8 +210,8 @@ void importInfluences(GltfImport& import, const tinygltf::Primitive& from, const
     const auto read = [&](const std::string& name) {
       AccessorView view(import, from.attributes.at(name));
       if (view.components() != 4 || view.count() != vertices)
-        import.file.fail(place + "/attributes/" + name, "not four numbers for each of " + std::to_string(vertices) +
-                                                            " positions");
+        import.file.fail(place + "/attributes/" + name,
+                         "not four numbers for each of " + std::to_string(vertices) + " positions");
       return view;
     };
     const AccessorView joints = read("JOINTS_" + std::to_string(s)), weights = read("WEIGHTS_" + std::to_string(s));

@@ -12,7 +12,20 @@ namespace {
 
 using nlohmann::json;
 
-enum class Kind { Index, Indices, IndexMap, IndexMaps, Integer, Number, Numbers, String, Strings, Bool, Object, Objects };
+enum class Kind {
+  Index,
+  Indices,
+  IndexMap,
+  IndexMaps,
+  Integer,
+  Number,
+  Numbers,
+  String,
+  Strings,
+  Bool,
+  Object,
+  Objects
+};
 
 struct Rule {
   const char* key;

@@ -52,7 +52,8 @@ void GltfImport::warn(const std::string& text) {
 void GltfImport::countValues(uint64_t count, const std::string& place) {
   animationValues += count;
   const uint64_t most = (1u << 22) + 4 * file.loadedBytes();
-  if (animationValues > most) file.fail(place, "more than " + std::to_string(most) + " numbers of animations and morph targets");
+  if (animationValues > most)
+    file.fail(place, "more than " + std::to_string(most) + " numbers of animations and morph targets");
 }
 
 Scene importGltf(const std::string& path, const ImportLimits& limits) {

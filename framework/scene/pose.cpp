@@ -104,8 +104,7 @@ std::vector<double> sample(const Channel& channel, double seconds) {
     return normalised(result);
   }
   if (isRotation(channel)) {
-    const glm::dquat q =
-        slerp(unit(glm::dquat(a[3], a[0], a[1], a[2])), unit(glm::dquat(b[3], b[0], b[1], b[2])), t);
+    const glm::dquat q = slerp(unit(glm::dquat(a[3], a[0], a[1], a[2])), unit(glm::dquat(b[3], b[0], b[1], b[2])), t);
     return {q.x, q.y, q.z, q.w};
   }
   for (size_t i = 0; i < width; ++i) result[i] = a[i] + t * (b[i] - a[i]);

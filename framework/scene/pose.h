@@ -51,8 +51,8 @@ glm::vec3 turned(const glm::dmat4& world, const glm::dvec3& way);
 /// A camera's place and orthonormal axes from its node's world matrix.
 void place(Camera& camera, const glm::dmat4& world);
 
-/// From `--clip`: a name, or a number from 0; an empty text takes the first. Throws InputError with the nearest name, or
-/// when the file has no clips.
+/// From `--clip`: a name, or a number from 0; an empty text takes the first. Throws InputError with the nearest name,
+/// or when the file has no clips.
 const Clip& chooseClip(const Scene& scene, const std::string& text);
 
 /// A time within the clip: it starts over when it ends. A clip without length stays at its start.

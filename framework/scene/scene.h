@@ -60,8 +60,8 @@ struct Primitive {
   std::vector<glm::vec3> normals;   ///< unit length
   std::vector<glm::vec4> tangents;  ///< xyz unit length, w = ±1
   std::vector<glm::vec2> uv0;
-  std::vector<uint32_t> indices;  ///< three a triangle, each below positions.size()
-  int material = -1;              ///< -1: glTF's default material
+  std::vector<uint32_t> indices;      ///< three a triangle, each below positions.size()
+  int material = -1;                  ///< -1: glTF's default material
   uint32_t influencesPerVertex = 0;   ///< a multiple of four; 0: no skin can deform it
   std::vector<Influence> influences;  ///< so many a vertex
   std::vector<MorphTarget> targets;
@@ -134,7 +134,8 @@ Bounds worldBounds(const Scene& scene);
 Camera framingCamera(const Bounds& bounds, float aspect);
 
 /// From `--camera`: the name of one of the scene's cameras, or "ex,ey,ez,tx,ty,tz[,vfov in degrees]".
-/// An empty text takes the scene's first camera, or one that frames it. Throws InputError.
-Camera chooseCamera(const Scene& scene, const std::string& text, float aspect);
+/// An empty text takes the scene's first camera, or one that frames `bounds` (without them: the scene at rest). Throws
+/// InputError.
+Camera chooseCamera(const Scene& scene, const std::string& text, float aspect, const Bounds* bounds = nullptr);
 
 }  // namespace weir::scene

@@ -8,6 +8,8 @@ std::string traitDefines(const SceneTraits& traits) {
     if (holds) lines += std::string("#define SCENE_") + name + " 1\n";
   };
   define(traits.texturedLights, "TEXTURED_LIGHTS");
+  define(traits.animated, "ANIMATED");
+  define(traits.deforms, "DEFORMS");
   return lines;
 }
 

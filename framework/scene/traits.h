@@ -9,6 +9,8 @@ namespace weir::scene {
 /// prepareScene() finds them; a new model adds its trait here, to traitDefines() and to where it is found.
 struct SceneTraits {
   bool texturedLights = false;  ///< SCENE_TEXTURED_LIGHTS: some emissive triangle's radiance varies with its texture
+  bool animated = false;  ///< SCENE_ANIMATED: instances, lights and acceleration structure differ from last frame's
+  bool deforms = false;   ///< SCENE_DEFORMS: so do vertex positions (skins, morph targets); implies animated
   bool operator==(const SceneTraits&) const = default;
 };
 

@@ -13,7 +13,7 @@ void describeGBuffer(PassDescription& d) {
       .doc("Where the surface was in the last frame minus where it is, pixels");
   d.param("jitter", false).doc("Sample a new place in the pixel's box every frame, the same in all pixels");
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::FrameCamera).needs(Need::FrameIndex);
-  d.needsPrevious(Need::FrameCamera);
+  d.needsPrevious(Need::FrameCamera).needsPrevious(Need::SceneGeometry);
 }
 
 void Raster::describe(PassDescription& d) {
