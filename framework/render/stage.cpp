@@ -89,6 +89,10 @@ Stage makeStage(const StageOptions& options, float aspect) {
   return s;
 }
 
+Player::Player(const Stage& stage) : stage_(stage) {
+  if (stage.prepared.traits.animated) states_.emplace(stage.scene, stage.prepared);
+}
+
 execute::FrameInput Player::frame(uint32_t number, uint32_t seed) {
   execute::FrameInput input;
   input.camera = stage_.camera;
@@ -98,8 +102,10 @@ execute::FrameInput Player::frame(uint32_t number, uint32_t seed) {
   const scene::Clip& clip = stage_.scene.clips[stage_.playback->clip];
   const scene::Pose pose = scene::evaluate(stage_.scene, clip, scene::wrapped(clip, stage_.playback->time(number)));
   input.camera = scene::posed(stage_.camera, pose);
-  state_ = states_.at(pose);
-  input.state = &state_;
+  if (states_) {
+    state_ = states_->at(pose);
+    input.state = &state_;
+  }
   return input;
 }
 

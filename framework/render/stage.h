@@ -48,13 +48,13 @@ Stage makeStage(const StageOptions& options, float aspect);
 /// What frames of a stage show: its camera, and its scene where the clip has taken it. The stage must outlive it.
 class Player {
  public:
-  explicit Player(const Stage& stage) : stage_(stage), states_(stage.scene, stage.prepared) {}
+  explicit Player(const Stage& stage);
   /// The input for a frame's number; valid until the next call.
   execute::FrameInput frame(uint32_t number, uint32_t seed);
 
  private:
   const Stage& stage_;
-  scene::StateMaker states_;
+  std::optional<scene::StateMaker> states_;  // only where a clip moves the scene
   scene::SceneState state_;
 };
 
