@@ -17,6 +17,8 @@ import tempfile
 KNOBS = [
     ("initial.candidates", "32", "8"),
     ("initial.samples", "1", "2"),
+    ("initial.uniformShare", "0.1", "0.5"),
+    ("initial.triangles", "solidAngle", "area"),
     ("initial.visibility", "true", "false"),
     ("temporal.confidenceCap", "20", "4"),
     ("temporal.mis", "pairwise", "biased"),

@@ -18,7 +18,8 @@ void Initial::describe(PassDescription& d) {
       .oneOf({"area", "solidAngle"})
       .specialises()
       .doc(
-          "How a point on an emissive triangle is drawn: by area, or by solid angle where it looks large (no fireflies "
+          "How a point on an emissive triangle is drawn: by area, or by solid angle where it is close for its size (no "
+          "fireflies "
           "close to it)");
   d.param("visibility", true)
       .specialises()

@@ -1,45 +1,53 @@
 // A triangle as seen from a point, and directions uniform in its solid angle.
-// Solid angle: Van Oosterom and Strackee 1983. Sampling: Arvo, "Stratified Sampling of Spherical Triangles", 1995.
+// Source: Peters, "BRDF Importance Sampling for Polygonal Lights", SIGGRAPH 2021: Van Oosterom and Strackee's tangent of half the
+// solid angle, inverted for the triangle that a sample cuts off. Written so that no term is a difference of nearly equal numbers:
+// a surface that touches a light sees a sliver, long and with hardly any solid angle, whose points are still worlds apart.
 #ifndef WEIR_SPHERICAL_TRIANGLE
 #define WEIR_SPHERICAL_TRIANGLE
 
-// Below this many steradians Arvo's angles lose too many bits in single precision; uniform area is then nearly uniform anyway.
-const float kLeastSolidAngle = 1.0 / 128.0;
+// A triangle whose longest side is below this part of the distance to it may as well be sampled by area: cos / d² then varies over
+// it by less than ((1 + r) / (1 - r))³, about 2, and single precision serves area better.
+const float kNearRatio = 1.0 / 8.0;
 
 struct SphericalTriangle {
-  vec3 a, b, c;      // unit, towards the corners
-  float solidAngle;  // steradians
+  vec3 a, b, c;        // unit, towards the corners
+  float g0, g1, g2;    // tan(Ω / 2) = g0 / (g1 + g2)
+  float solidAngle;    // steradians; 0 where the point lies in the triangle's plane
+  bool near;           // to be sampled by solid angle
 };
 
 // From the vector to the first corner and the two edges from there.
 SphericalTriangle sphericalTriangle(vec3 toCorner, vec3 edge1, vec3 edge2) {
   SphericalTriangle t;
-  t.a = normalize(toCorner);
-  t.b = normalize(toCorner + edge1);
-  t.c = normalize(toCorner + edge2);
-  const float volume = abs(dot(t.a, cross(t.b, t.c)));
-  t.solidAngle = 2.0 * atan(volume, 1.0 + dot(t.a, t.b) + dot(t.b, t.c) + dot(t.c, t.a));
+  const vec3 corner1 = toCorner + edge1, corner2 = toCorner + edge2, edge3 = edge2 - edge1;
+  const float d0 = length(toCorner), d1 = length(corner1), d2 = length(corner2);
+  const float longest2 = max(max(dot(edge1, edge1), dot(edge2, edge2)), dot(edge3, edge3));
+  const float nearest = min(min(d0, d1), d2);
+  t.near = longest2 > kNearRatio * kNearRatio * nearest * nearest;
+  t.a = toCorner / d0;
+  t.b = corner1 / d1;
+  t.c = corner2 / d2;
+  // The volume by the height over the plane, 1 + a·b by the chord a + b: neither cancels in a sliver.
+  t.g0 = abs(dot(toCorner, cross(edge1, edge2))) / (d0 * d1 * d2);
+  const vec3 chord = t.a + t.b;
+  t.g1 = dot(chord, t.c);
+  t.g2 = 0.5 * dot(chord, chord);
+  t.solidAngle = t.g0 > 0.0 ? 2.0 * atan(t.g0, t.g1 + t.g2) : 0.0;
   return t;
 }
 
-// The component of v that is orthogonal to the unit vector `axis`, unit length.
-vec3 awayFrom(vec3 axis, vec3 v) { return normalize(v - dot(v, axis) * axis); }
-
+// Only for a solid angle above 0.
 vec3 sampleSphericalTriangle(SphericalTriangle t, vec2 u) {
-  const vec3 alongB = awayFrom(t.a, t.b), alongC = awayFrom(t.a, t.c);
-  const float cosAlpha = clamp(dot(alongB, alongC), -1.0, 1.0);
-  const float sinAlpha = length(cross(alongB, alongC));
-  const float alpha = atan(sinAlpha, cosAlpha);
-  const float part = u.x * t.solidAngle - alpha;
-  const float sine = sin(part), cosine = cos(part);
-  const float p = cosine - cosAlpha;
-  const float q = sine + sinAlpha * dot(t.a, t.b);
-  const float numerator = (q * cosine - p * sine) * cosAlpha - q;
-  const float denominator = (q * sine + p * cosine) * sinAlpha;
-  const float cosNew = denominator != 0.0 ? clamp(numerator / denominator, -1.0, 1.0) : 1.0;
-  const vec3 corner = cosNew * t.a + sqrt(max(0.0, 1.0 - cosNew * cosNew)) * alongC;
-  const float z = 1.0 - u.y * (1.0 - dot(corner, t.b));
-  return normalize(z * t.b + sqrt(max(0.0, 1.0 - z * z)) * awayFrom(t.b, corner));
+  // The corner c moves along its side to a, until what is left of the triangle has the part u.x of the solid angle.
+  const float halfAngle = 0.5 * u.x * t.solidAngle;
+  const vec3 r = (t.g0 * cos(halfAngle) - t.g1 * sin(halfAngle)) * t.a + t.g2 * sin(halfAngle) * t.c;
+  const vec3 moved = 2.0 * dot(t.a, r) / dot(r, r) * r - t.a;
+  // Then from b towards the moved corner, uniform in the cosine.
+  const vec3 across = moved - t.b;
+  const float whole = 0.5 * dot(across, across);  // 1 - cosine of the arc
+  const float part = u.y * whole;
+  const float scale = whole > 0.0 ? sqrt(u.y * (2.0 - part) / (2.0 - whole)) : 0.0;
+  return normalize((1.0 - part) * t.b + scale * (across + whole * t.b));
 }
 
 #endif

@@ -12,14 +12,14 @@ vec3 arriving(Surface surface, LightSample light) {
   return f * traceVisibility(surface, light);
 }
 
-// A stratified sample of a triangle that looks large from the surface, uniform in solid angle: its estimate is bounded, whereas
-// uniform area sampling has unbounded variance close to the light. `area` is the solid angle.
+// A stratified sample of a triangle close to the surface, uniform in solid angle: its estimate is bounded, whereas uniform area
+// sampling has unbounded variance close to the light. `area` is the solid angle.
 LightSample sampleBySolidAngle(Light light, SphericalTriangle t, vec2 u, vec3 position) {
   LightSample s;
   s.direction = sampleSphericalTriangle(t, u);
   s.area = t.solidAngle;
   const vec3 normal = cross(light.a, light.b);
-  const float facing = -dot(normal, s.direction);
+  const float facing = -dot(normal, light.position - position);  // the same for every direction into the triangle
   const bool lit = facing > 0.0 || ((light.kind & kLightDoubleSided) != 0u && facing < 0.0);
   s.target = position + s.direction * (dot(normal, light.position - position) / dot(normal, s.direction));
   s.radiance = lit ? light.radiance : vec3(0.0);
@@ -31,7 +31,7 @@ LightSample sampleBySolidAngle(Light light, SphericalTriangle t, vec2 u, vec3 po
   return s;
 }
 
-// A stratified sample uniform in area, for triangles that look small: there it is as good and more exact.
+// A stratified sample uniform in area, for triangles that are far for their size: there it is as good and more exact.
 LightSample sampleByArea(Light light, vec2 u, vec3 position) {
   const float root = sqrt(u.x);
   return evaluateTriangle(light, vec2(root * (1.0 - u.y), root * u.y), position);
@@ -52,12 +52,12 @@ void run(uvec2 pixel) {
         continue;
       }
       const SphericalTriangle t = sphericalTriangle(light.position - surface.position, light.a, light.b);
-      const bool large = t.solidAngle > kLeastSolidAngle;
+      if (!(t.solidAngle > 0.0)) continue;
       vec3 sum = vec3(0.0);
       for (int j = 0; j < n * n; ++j) {
         const vec2 u = (vec2(j % n, j / n) + next2(random)) / float(n);
         LightSample s;
-        if (large) s = sampleBySolidAngle(light, t, u, surface.position);
+        if (t.near) s = sampleBySolidAngle(light, t, u, surface.position);
         else s = sampleByArea(light, u, surface.position);
         sum += arriving(surface, s) * s.area;
       }

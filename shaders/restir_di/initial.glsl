@@ -18,8 +18,9 @@ Candidate drawCandidate(Light light, vec2 u, vec3 position) {
   c.place = packPlace(u);
   if (param_triangles == kBySolidAngle && (light.kind & kKindMask) == kTriangle) {
     const SphericalTriangle t = sphericalTriangle(light.position - position, light.a, light.b);
-    if (t.solidAngle > kLeastSolidAngle) {
-      c.place = placeAt(barycentricsAlong(light, position, sampleSphericalTriangle(t, u)));
+    if (t.near) {
+      // Seen edge on it has no solid angle, and whatever place stands here counts for nothing.
+      if (t.solidAngle > 0.0) c.place = placeAt(barycentricsAlong(light, position, sampleSphericalTriangle(t, u)));
       c.light = evaluateLight(light, c.place, position);
       // dω = cos θ / d² dA turns the uniform density 1/Ω into one per m², at the very point that the 16 bits name.
       const vec3 d = c.light.target - position;

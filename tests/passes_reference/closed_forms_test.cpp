@@ -243,6 +243,29 @@ TEST(AllLights, QuadLightByLambertsFormulaAndQuadrature) {
   }
 }
 
+// Floor beside a lamp that stands on it, millimetres away from a lamp of a metre: a long sliver of hardly any solid
+// angle, whose nearest points weigh a million times its farthest. Sampled uniformly in area, or with angles that
+// cancel, single pixels are off by orders of magnitude.
+TEST(AllLights, SliversOfALampThatTouchesTheFloorAreBounded) {
+  Builder b = floorOf({0.8f, 0.8f, 0.8f}, 0, 1);
+  scene::Material m;
+  m.emission = glm::vec3(4, 3, 2);
+  b.add(quad({0, 0, 1}, {0, 0, 0}, {0, 1, 0}, {0, 1, 1}, b.material(m)));  // faces +x
+  const scene::Camera camera = lookAt({1e-4f, 0.05f, -0.02f}, {1e-4f, 0, -0.0199f}, 0.2f);
+  const Picture p = render(b.scene, camera, 4, 4);
+  size_t front = 0;
+  forSurfaces(b.scene, camera, p, [&](uint32_t i, const OracleSurface& s, glm::dvec3, glm::dvec3 color) {
+    if (s.position.y > 1e-4 || s.position.x < 1e-5) return;
+    ++front;
+    const double lambert =
+        0.8 / kPi * 4 * lambertPolygon(s.position, {0, 1, 0}, {{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, {0, 1, 1}});
+    // The diffuse part is 0.8 … 0.96 of it, the specular part of roughness 1 adds some per cent.
+    EXPECT_GT(color.x, 0.8 * lambert) << "pixel " << i;
+    EXPECT_LT(color.x, 1.25 * lambert) << "pixel " << i;
+  });
+  EXPECT_GT(front, 200u);
+}
+
 // A lamp that only seems to shine: each way of sampling must know its front.
 TEST(AllLights, LampsThatFaceAwayAndLightsBelowTheHorizonGiveNothing) {
   Builder b = floorOf({0.8f, 0.8f, 0.8f}, 0, 0.5f);
