@@ -35,9 +35,9 @@ Json number(double value) {
 }
 
 Comparison compare(const Options& options) {
-  const image::FileKind kind = image::fileKind(options.picture);
-  if (kind != image::fileKind(options.reference)) {
-    throw InputError(fmt::format("'{}' and '{}' are an EXR and a PNG: radiance and display values cannot be compared",
+  const bool radiance = image::fileKind(options.picture) != image::FileKind::Png;
+  if (radiance != (image::fileKind(options.reference) != image::FileKind::Png)) {
+    throw InputError(fmt::format("only one of '{}' and '{}' is a PNG: radiance and display values cannot be compared",
                                  options.picture, options.reference));
   }
   const image::Picture picture = image::readPicture(options.picture), reference = image::readPicture(options.reference);
@@ -54,7 +54,7 @@ Comparison compare(const Options& options) {
   image::Picture mask;
   if (!options.mask.empty()) mask = image::readPicture(options.mask);
   const image::Picture* maskOrAll = options.mask.empty() ? nullptr : &mask;
-  result.hdr = kind == image::FileKind::Exr;
+  result.hdr = radiance;
   result.metrics = image::measure(picture, reference, {.mask = maskOrAll, .hdr = result.hdr});
   if (options.tiles > 0) result.tiles = image::compareTiles(picture, reference, options.tiles, maskOrAll);
   return result;

@@ -98,6 +98,12 @@ void addRenderCommand(CLI::App& app) {
   command->add_option("--lights", o.stage.lights, "Put so many point lights into a scene that has none");
   command->add_option("--light-seed", o.stage.lightSeed, "Seed of their places and colours")->capture_default_str();
   command->add_flag("--replace-lights", o.stage.replaceLights, "With --lights: drop the scene's own lights");
+  command->add_option("--environment", o.stage.environment, "Light from all around: equirectangular .exr or .hdr");
+  command->add_option("--environment-scale", o.stage.environmentScale, "Multiplies it")->capture_default_str();
+  command
+      ->add_option("--environment-rotation", o.stage.environmentRotation,
+                   "Degrees about +Y, counter-clockwise as seen from above")
+      ->capture_default_str();
   command->add_option("--camera", o.stage.camera, "Name of a camera of the scene, or ex,ey,ez,tx,ty,tz[,vfov degrees]");
   addAnimationOptions(*command, o.stage);
   CLI::Option* exposure = command->add_option("--exposure", words->exposure, "EV, for every output.Tonemap");

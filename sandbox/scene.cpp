@@ -19,8 +19,21 @@ ordered_json vec(const glm::vec3& v) {
   return {v.x, v.y, v.z};
 }
 
+/// What the scene holds in memory once it is arranged. Devices need about the same again, and acceleration structures:
+/// `weir render --stats` says how much.
+ordered_json memory(const Scene& scene, const PreparedScene& prepared) {
+  const auto bytes = [](const auto&... arrays) { return (uint64_t{0} + ... + (arrays.size() * sizeof(arrays[0]))); };
+  uint64_t images = 0;
+  for (const Image& image : scene.images) images += image.rgba.size();
+  return {{"geometry_bytes",
+           bytes(prepared.positions, prepared.vertices, prepared.colors, prepared.uvs1, prepared.triangles)},
+          {"image_bytes", images},
+          {"light_bytes", bytes(prepared.lights, prepared.aliasTable)}};
+}
+
 ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
   const SceneSummary s = summarize(scene);
+  const SceneTraits& t = prepared.traits;
   ordered_json cameras = ordered_json::array();
   for (const Camera& camera : scene.cameras)
     cameras.push_back({{"name", camera.name},
@@ -36,14 +49,21 @@ ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
   j["vertices"] = s.vertices;
   j["meshes"] = s.meshes;
   j["primitives"] = s.primitives;
+  j["colored_primitives"] = s.coloredPrimitives;
   j["instances"] = s.instances;
-  j["materials"] = {{"all", s.materials}, {"masked", s.maskedMaterials}, {"blended", s.blendMaterials}};
+  j["materials"] = {{"all", s.materials},
+                    {"masked", s.maskedMaterials},
+                    {"blended", s.blendMaterials},
+                    {"specular_glossiness", s.glossyMaterials},
+                    {"unlit", s.unlitMaterials}};
   j["lights"] = {{"point", s.pointLights},
                  {"spot", s.spotLights},
                  {"directional", s.directionalLights},
                  {"triangles", prepared.triangleLights},
                  {"sampled", prepared.lights.size()}};
-  j["textures"] = {{"all", s.textures}, {"images", s.images}, {"used", prepared.textures.size()}};
+  j["textures"] = {
+      {"all", s.textures}, {"images", s.images}, {"used", prepared.textures.size()}, {"transformed", s.uvTransforms}};
+  j["memory"] = memory(scene, prepared);
   j["animations"] = s.animations;
   if (s.bounds.empty)
     j["bounds"] = nullptr;
@@ -54,7 +74,16 @@ ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
                  {"textures", !prepared.textures.empty()},
                  {"emissive_triangles", prepared.triangleLights > 0},
                  {"delta_lights", prepared.lights.size() > prepared.triangleLights},
-                 {"shared_geometry", prepared.ranges.size() > 2}};  // the first two are the merged geometry
+                 {"shared_geometry", prepared.ranges.size() > 2},  // the first two are the merged geometry
+                 {"textured_lights", t.texturedLights},
+                 {"vertex_colors", t.vertexColors},
+                 {"uv_sets", t.uvSets},
+                 {"uv_transforms", t.uvTransforms},
+                 {"mipmaps", t.mipmaps},
+                 {"specular_glossiness", t.specularGlossiness},
+                 {"dielectric_specular", t.dielectricSpecular},
+                 {"unlit", t.unlit},
+                 {"f90", t.f90}};
   j["warnings"] = scene.warnings;
   return j;
 }

@@ -8,6 +8,7 @@ cornell-1000-points.glb   the same box, lit by 1000 coloured point lights instea
 materials.glb             spheres, metallic (rows) by roughness (columns), under a quad and a point light
 cornell-moving.glb        the box with a turning block, a skinned column, a morphing ball and a lamp that moves and grows; a clip
                           for each of them, and one for all
+sky.hdr                   an environment: a clear sky with a low sun over dark ground, 64 x 32 texels
 alpha-mask.glb            leaf and grid cut-outs (a generated PNG) that throw shadows on a floor
 Metres, +Y up. Every file passes the Khronos validator (tools/gltf-validator).
 """
@@ -385,6 +386,55 @@ def alpha_mask(path):
     g.write(path)
 
 
+def rgbe(color):
+    """Three bytes of mantissa and one of exponent, rounded."""
+    largest = max(color)
+    if largest < 1e-30: return (0, 0, 0, 0)
+    exponent = math.frexp(largest)[1]
+    if round(largest * 2.0 ** (8 - exponent)) > 255: exponent += 1
+    return tuple(round(c * 2.0 ** (8 - exponent)) for c in color) + (exponent + 128,)
+
+
+def runs(values):
+    """A channel of a scan line: runs of four and more, the rest as it is."""
+    out, i = bytearray(), 0
+    def run(at):
+        length = 1
+        while at + length < len(values) and length < 127 and values[at + length] == values[at]: length += 1
+        return length
+    while i < len(values):
+        if run(i) >= 4:
+            out += bytes((128 + run(i), values[i]))
+            i += run(i)
+            continue
+        start = i
+        while i < len(values) and i - start < 128 and run(i) < 4: i += 1
+        out += bytes([i - start]) + bytes(values[start:i])
+    return out
+
+
+def radiance(path, width, height, texel):
+    """A Radiance picture; texel(x, y) gives linear red, green and blue."""
+    with open(path, "wb") as out:
+        out.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width))
+        for y in range(height):
+            line = [rgbe(texel(x, y)) for x in range(width)]
+            out.write(bytes((2, 2, width >> 8, width & 255)))
+            for channel in range(4): out.write(runs([texel[channel] for texel in line]))
+
+
+def sky(path, width=64, height=32):
+    """Blue above, white at the horizon, brown below; the sun is one texel, 37 degrees high, to the front right."""
+    sun = (54, 9)  # column, row: the middle of a picture shows -Z, so this is between +X and +Z
+    def texel(x, y):
+        if (x, y) == sun: return (700.0, 620.0, 500.0)
+        up = math.cos(math.pi * (y + 0.5) / height)
+        if up < 0: return (0.12, 0.1, 0.08)
+        t = up ** 0.5
+        return tuple(a + (b - a) * t for a, b in zip((0.9, 0.95, 1.0), (0.15, 0.35, 0.8)))
+    radiance(path, width, height, texel)
+
+
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
     for name, make in (("cornell", cornell), ("cornell-1000-points", cornell_points), ("cornell-moving", cornell_moving),
@@ -392,6 +442,9 @@ def main():
         path = os.path.join(folder, name + ".glb")
         make(path)
         print("%s: %d bytes" % (path, os.path.getsize(path)))
+    path = os.path.join(folder, "sky.hdr")
+    sky(path)
+    print("%s: %d bytes" % (path, os.path.getsize(path)))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@
 namespace weir::execute {
 namespace {
 
-// Host sides: scene/prepared.h, scene/lights.h, scene/upload.h, execute/frame_constants.h.
+// Host sides: scene/prepared.h, scene/lights.h, scene/environment.h, scene/upload.h, execute/frame_constants.h.
 constexpr const char* kStructs = R"(
 struct Camera { vec4 origin, forward, right, up; };
 struct Vertex { uint normal, tangent; vec2 uv; };
@@ -18,6 +18,8 @@ struct Material {
   vec4 baseColor; vec3 emission; float alphaCutoff; float metallic, roughness, normalScale; uint flags;
   int baseColorTexture, metallicRoughnessTexture, normalTexture, emissiveTexture;
 };
+struct Specular { vec3 f0; float weight; int colorTexture, weightTexture; uvec2 pad; };
+struct TextureUse { vec4 linear; vec2 offset; uint uvSet; float texelLevel; };
 struct Light { vec3 position; uint kind; vec3 a; uint triangle; vec3 b; float area; vec3 radiance; float pdf; };
 struct AliasCell { float threshold; uint alias; };
 layout(set = 0, binding = 0, std140) uniform FrameBlock {
@@ -61,18 +63,19 @@ std::string buffer(uint32_t binding, const char* access, const char* type, const
 }
 
 struct SceneParts {
-  bool geometry = false, materials = false, lights = false, acceleration = false;
+  bool geometry = false, materials = false, lights = false, environment = false, acceleration = false;
   bool previousGeometry = false, previousLights = false, previousAcceleration = false;
 };
 
 // Alpha tests of rays read materials, and lights read emission textures: those come along.
-SceneParts partsOf(const PassDescription& d) {
+SceneParts partsOf(const PassDescription& d, const scene::SceneTraits& traits) {
   SceneParts p;
   p.previousAcceleration = d.has(Need::SceneAcceleration, true);
   p.previousLights = d.has(Need::SceneLights, true);
   p.previousGeometry = d.has(Need::SceneGeometry, true);
   p.acceleration = d.has(Need::SceneAcceleration) || p.previousAcceleration;
   p.lights = d.has(Need::SceneLights) || p.previousLights;
+  p.environment = traits.environment && (d.has(Need::SceneEnvironment) || p.lights);
   p.materials = d.has(Need::SceneMaterials) || p.lights || p.acceleration;
   p.geometry = d.has(Need::SceneGeometry) || p.materials || p.previousGeometry;
   return p;
@@ -94,7 +97,7 @@ std::string previousDeclarations(const SceneParts& parts, const scene::SceneTrai
   return s;
 }
 
-std::string sceneDeclarations(const SceneParts& parts, uint32_t textures) {
+std::string sceneDeclarations(const SceneParts& parts, uint32_t textures, const scene::SceneTraits& traits) {
   std::string s;
   if (parts.geometry) {
     s += "#define NEED_SCENE_GEOMETRY 1\n#define sceneInstanceCount frameBlock.instances\n";
@@ -110,11 +113,27 @@ std::string sceneDeclarations(const SceneParts& parts, uint32_t textures) {
     s += buffer(scene::kBindMaterials, "readonly", "Material", "sceneMaterials");
     s += fmt::format("layout(set = 0, binding = {}) uniform sampler2D sceneTextures[{}];\n",
                      uint32_t{scene::kBindTextures}, textures);
+    if (traits.vertexColors) s += buffer(scene::kBindColors, "readonly", "uvec2", "sceneColors");
+    if (traits.uvSets) s += buffer(scene::kBindUvs1, "readonly", "vec2", "sceneUvs1");
+    if (traits.specularGlossiness || traits.dielectricSpecular)
+      s += buffer(scene::kBindSpeculars, "readonly", "Specular", "sceneSpeculars");
+    if (traits.uvSets || traits.uvTransforms || traits.mipmaps)
+      s += "#define SCENE_TEXTURE_USES 1\n" +
+           buffer(scene::kBindTextureUses, "readonly", "TextureUse", "sceneTextureUses");
   }
   if (parts.lights) {
     s += "#define NEED_SCENE_LIGHTS 1\n#define sceneLightCount frameBlock.lights\n";
     s += buffer(scene::kBindLights, "readonly", "Light", "sceneLights");
     s += buffer(scene::kBindAlias, "readonly", "AliasCell", "sceneAlias");
+  }
+  if (parts.environment) {
+    s += fmt::format(R"(struct EnvironmentCell {{ float threshold; uint alias; float spread; }};
+layout(set = 0, binding = {}, std430) readonly buffer EnvironmentBlock {{
+  uint columns, rows, block, width, height; float unit, rotation; uint pad; EnvironmentCell cells[];
+}} sceneEnvironment;
+layout(set = 0, binding = {}) uniform sampler2D sceneEnvironmentMap;
+)",
+                     uint32_t{scene::kBindEnvironment}, uint32_t{scene::kBindEnvironmentMap});
   }
   return s;
 }
@@ -264,12 +283,12 @@ uint32_t paramBits(const ParamDescription& description, const ParamValue& value)
 
 std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::string& file) {
   const PassDescription& d = *k.pass->description;
-  const SceneParts parts = partsOf(d);
+  const SceneParts parts = partsOf(d, k.traits);
   const bool traces = kind == KernelKind::RayPipeline || kind == KernelKind::RayQuery;
   std::string s = extensions(kind == KernelKind::RayPipeline, kind == KernelKind::RayQuery);
   s += scene::traitDefines(k.traits);
   s += kStructs;
-  s += sceneDeclarations(parts, k.sceneTextures);
+  s += sceneDeclarations(parts, k.sceneTextures, k.traits);
   s += previousDeclarations(parts, k.traits);
   if (traces) {
     s += fmt::format("layout(set = 0, binding = {}) uniform accelerationStructureEXT sceneAcceleration;\n",
@@ -327,7 +346,7 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
 
 std::string hitShaderSource(const std::string& file, uint32_t sceneTextures, const scene::SceneTraits& traits) {
   return extensions(true, false) + scene::traitDefines(traits) + kStructs +
-         sceneDeclarations({.geometry = true, .materials = true}, sceneTextures) +
+         sceneDeclarations({.geometry = true, .materials = true}, sceneTextures, traits) +
          fmt::format("#include \"trace/{}\"\n", file);
 }
 

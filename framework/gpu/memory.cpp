@@ -3,6 +3,7 @@
 #include <weir/gpu/memory.h>
 #include <weir/gpu/vma.h>
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -197,17 +198,32 @@ Buffer uploadBuffer(const Device& device, std::span<const std::byte> bytes, VkBu
 }
 
 Image uploadImage(const Device& device, ImageDesc desc, std::span<const std::byte> texels, const std::string& name) {
+  return uploadImage(device, desc, texels, {}, name);
+}
+
+Image uploadImage(const Device& device, ImageDesc desc, std::span<const std::byte> texels,
+                  std::span<const std::byte> levels, const std::string& name) {
   desc.usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   Image image(device, desc, name);
-  Buffer staging(device, texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Residency::Upload, name + " (staging)");
-  if (!texels.empty()) std::memcpy(staging.mapped(), texels.data(), texels.size());
+  Buffer staging(device, texels.size() + levels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, Residency::Upload,
+                 name + " (staging)");
+  std::ranges::copy(texels, staging.mapped());
+  std::ranges::copy(levels, staging.mapped() + texels.size());
   staging.flush();
+  std::vector<VkBufferImageCopy> regions;
+  const uint64_t texel = texels.size() / (uint64_t{desc.width} * desc.height * desc.depth);
+  uint64_t offset = 0;
+  for (uint32_t level = 0; level == 0 || (level < desc.mipLevels && !levels.empty()); ++level) {
+    const VkExtent3D extent{std::max(1u, desc.width >> level), std::max(1u, desc.height >> level),
+                            std::max(1u, desc.depth >> level)};
+    regions.push_back(
+        {.bufferOffset = offset, .imageSubresource = {image.aspect(), level, 0, 1}, .imageExtent = extent});
+    offset += texel * extent.width * extent.height * extent.depth;
+  }
   device.submitAndWait([&](VkCommandBuffer commands) {
     transition(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    const VkBufferImageCopy region{.imageSubresource = {image.aspect(), 0, 0, 1},
-                                   .imageExtent = {desc.width, desc.height, desc.depth}};
-    vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                           &region);
+    vkCmdCopyBufferToImage(commands, staging.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                           static_cast<uint32_t>(regions.size()), regions.data());
     transition(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   });
   return image;

@@ -89,6 +89,10 @@ Buffer uploadBuffer(const Device& device, const std::vector<T>& values, VkBuffer
 /// Image filled with tightly packed texels (level 0) and left in SHADER_READ_ONLY_OPTIMAL; waits. Adds TRANSFER_DST and
 /// SAMPLED.
 Image uploadImage(const Device& device, ImageDesc desc, std::span<const std::byte> texels, const std::string& name);
+/// The same with all of desc.mipLevels: `levels` has those from level 1 on, tightly packed one behind the other. Of an
+/// uncompressed colour format.
+Image uploadImage(const Device& device, ImageDesc desc, std::span<const std::byte> texels,
+                  std::span<const std::byte> levels, const std::string& name);
 
 /// Copies a buffer's bytes back (needs TRANSFER_SRC); waits.
 std::vector<std::byte> readBuffer(const Device& device, const Buffer& buffer);

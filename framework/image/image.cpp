@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <weir/image/hdr.h>
 #include <weir/image/image.h>
 #include <weir/image/limits.h>
 
@@ -43,11 +44,19 @@ FileKind fileKind(const std::string& path) {
   static constexpr std::array<unsigned char, 8> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   if (count >= exr.size() && std::memcmp(head.data(), exr.data(), exr.size()) == 0) return FileKind::Exr;
   if (count >= png.size() && std::memcmp(head.data(), png.data(), png.size()) == 0) return FileKind::Png;
-  failRead(path, count == 0 ? "the file is empty" : "neither an OpenEXR nor a PNG file");
+  if (count >= 2 && head[0] == '#' && head[1] == '?') return FileKind::Hdr;
+  failRead(path, count == 0 ? "the file is empty" : "neither an OpenEXR nor a Radiance nor a PNG file");
 }
 
 Picture readPicture(const std::string& path) {
-  return fileKind(path) == FileKind::Exr ? readExr(path) : readPng(path);
+  switch (fileKind(path)) {
+    case FileKind::Exr:
+      return readExr(path);
+    case FileKind::Hdr:
+      return readHdr(path);
+    default:
+      return readPng(path);
+  }
 }
 
 }  // namespace weir::image

@@ -30,10 +30,10 @@ void writePng(const std::string& path, const Picture& picture, Encoding encoding
 /// 8- or 16-bit PNG, values/max as they are (no decoding of sRGB). Throws InputError.
 Picture readPng(const std::string& path);
 
-enum class FileKind : unsigned char { Exr, Png };
+enum class FileKind : unsigned char { Exr, Png, Hdr };
 /// What the file is by its first bytes, whatever its name says. Throws InputError.
 FileKind fileKind(const std::string& path);
-/// readExr or readPng by fileKind(). Throws InputError.
+/// readExr, readPng or readHdr (image/hdr.h) by fileKind(). Throws InputError.
 Picture readPicture(const std::string& path);
 
 }  // namespace weir::image

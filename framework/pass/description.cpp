@@ -9,7 +9,7 @@
 namespace weir {
 namespace {
 
-constexpr const char* kNeedNames[] = {"scene.geometry",     "scene.materials", "scene.lights",
+constexpr const char* kNeedNames[] = {"scene.geometry",     "scene.materials", "scene.lights", "scene.environment",
                                       "scene.acceleration", "frame.camera",    "frame.index"};
 static_assert(std::size(kNeedNames) == static_cast<size_t>(Need::Count));
 

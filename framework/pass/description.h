@@ -145,7 +145,8 @@ struct ParamDescription {
 enum class Need : uint8_t {
   SceneGeometry,      ///< triangles, vertices, instances
   SceneMaterials,     ///< materials and textures
-  SceneLights,        ///< light table and alias table
+  SceneLights,        ///< light table and alias table, and the environment
+  SceneEnvironment,   ///< radiance from beyond the scene
   SceneAcceleration,  ///< rays: closest hit and occlusion
   FrameCamera,
   FrameIndex,  ///< frame number and seed, so: random numbers

@@ -10,6 +10,8 @@
 #include <weir/render/statistics.h>
 #include <weir/render/write_file.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -104,6 +106,18 @@ std::map<std::string, std::string> header(const RenderOptions& o, const Stage& s
   return h;
 }
 
+RunFacts::Environment environmentFacts(const Stage& stage) {
+  const scene::Environment& e = stage.scene.environment;
+  const scene::EnvironmentTable& table = stage.prepared.environment;
+  RunFacts::Environment facts{e.path,     e.width,        e.height, table.columns,
+                              table.rows, table.integral, 0.0,      stage.environmentSeconds};
+  const auto environment = static_cast<uint32_t>(scene::GpuLightKind::Environment);
+  for (const scene::GpuLight& light : stage.prepared.lights) {
+    if (light.kind == environment) facts.share = light.pdf;
+  }
+  return facts;
+}
+
 /// Renders one frame of `executor` with rays counted, after as many as give the history its usual length.
 uint64_t countRays(const gpu::Device& device, shader::Compiler& compiler, Registry& registry,
                    const scene::SceneGpu& scene, const execute::Executor& timed, execute::ExecutorOptions options,
@@ -114,6 +128,12 @@ uint64_t countRays(const gpu::Device& device, shader::Compiler& compiler, Regist
   for (uint32_t f = 0; f < std::min(frames, 3u); ++f) executor.frame(player.frame(f, 0));
   executor.finish();
   return executor.rays();
+}
+
+uint64_t peakHostBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return uint64_t{1024} * static_cast<uint64_t>(usage.ru_maxrss);  // Linux counts in KiB
 }
 
 }  // namespace
@@ -128,6 +148,7 @@ uint32_t restartSeed(uint32_t seed, uint32_t restart) {
 
 void render(const RenderOptions& o) {
   checkOptions(o);
+  const Clock::time_point begin = Clock::now();
   Registry registry(pluginSearchPath(o.pluginPaths));
   graph::CompiledGraph compiled = graph::compileFile(o.graph, withExposure(o), registry.catalog(), o.width, o.height);
   const std::vector<std::string> names = wanted(o, compiled);
@@ -164,6 +185,10 @@ void render(const RenderOptions& o) {
     std::map<std::string, FrameMean> window;
     for (uint32_t f = 0; f < o.frames; ++f) {
       executor.frame(player.frame(o.firstFrame + f, restartSeed(o.seed, r)));
+      if (r == 0 && f == 0 && !o.statistics.empty()) {
+        executor.finish();
+        facts.firstFrameSeconds = secondsSince(begin);
+      }
       if (f + o.average >= o.frames) {
         for (const std::string& name : names) window[name].add(executor.read(name));
       }
@@ -193,7 +218,11 @@ void render(const RenderOptions& o) {
     facts.scene = stage.sceneLabel;
     facts.lights = stage.lightsLabel;
     facts.animation = animationOf(o, stage);
-    facts.importSeconds = stage.importSeconds;
+    facts.environment = environmentFacts(stage);
+    facts.importTimes = stage.importTimes;
+    facts.accelerationSeconds = scene.accelerationSeconds;
+    facts.uploadSeconds -= facts.accelerationSeconds;
+    facts.peakHostBytes = peakHostBytes();
     facts.prepareSeconds = stage.prepareSeconds;
     facts.sceneBytes = scene.bytes() + executor.motionBytes();
     facts.transientBytes = executor.transientBytes();

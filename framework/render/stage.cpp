@@ -28,6 +28,33 @@ uint64_t fileHash(const std::string& path) {
   return hash;
 }
 
+/// "name 0123456789abcdef": tells files of one name apart.
+std::string fileLabel(const std::string& path) {
+  return fmt::format("{} {:016x}", std::filesystem::path(path).filename().string(), fileHash(path));
+}
+
+void addEnvironment(const StageOptions& options, Stage& s) {
+  if (options.environment.empty()) {
+    if (options.environmentScale != 1.0f || options.environmentRotation != 0.0f) {
+      throw InputError("--environment-scale and --environment-rotation need --environment FILE");
+    }
+    return;
+  }
+  s.scene.environment =
+      scene::readEnvironment(options.environment, options.environmentScale, options.environmentRotation);
+  const scene::Environment& e = s.scene.environment;
+  s.lightsLabel += ", environment " + fileLabel(options.environment);
+  if (options.environmentScale != 1.0f) s.lightsLabel += fmt::format(" times {:.9g}", options.environmentScale);
+  if (options.environmentRotation != 0.0f)
+    s.lightsLabel += fmt::format(" turned {:.9g} degrees", options.environmentRotation);
+  const auto warn = [&](const std::string& text) { s.scene.warnings.push_back(options.environment + ": " + text); };
+  if (e.mended > 0) warn(fmt::format("{} texels are negative or not finite; those channels count as black", e.mended));
+  if (e.width != uint64_t{2} * e.height)
+    warn(fmt::format("{}x{} texels are stretched over the sphere; a whole one is twice as wide as high", e.width,
+                     e.height));
+  if (!e.shines()) warn("the environment is black");
+}
+
 bool hasLights(const scene::Scene& scene) {
   if (!scene.lights.empty()) return true;
   return std::ranges::any_of(scene.instances, [&](const scene::Instance& i) {
@@ -54,11 +81,10 @@ std::optional<Playback> choosePlayback(const StageOptions& options, const scene:
 
 Stage makeStage(const StageOptions& options, float aspect) {
   Stage s;
-  const auto start = std::chrono::steady_clock::now();
-  s.scene = scene::importGltf(options.scene);
-  s.importSeconds = secondsSince(start);
-  s.sceneLabel =
-      fmt::format("{} {:016x}", std::filesystem::path(options.scene).filename().string(), fileHash(options.scene));
+  s.scene = scene::importGltf(options.scene, {}, &s.importTimes);
+  const auto hash = std::chrono::steady_clock::now();
+  s.sceneLabel = fileLabel(options.scene);
+  s.importTimes.read += secondsSince(hash);
   s.lightsLabel = "scene";
   if (options.replaceLights) {
     if (options.lights == 0) throw InputError("--replace-lights needs --lights N");
@@ -73,6 +99,9 @@ Stage makeStage(const StageOptions& options, float aspect) {
     scene::addGeneratedLights(s.scene, options.lights, options.lightSeed);
     s.lightsLabel = fmt::format("{} points, seed {}", options.lights, options.lightSeed);
   }
+  const auto environment = std::chrono::steady_clock::now();
+  addEnvironment(options, s);
+  s.environmentSeconds = secondsSince(environment);
   s.playback = choosePlayback(options, s.scene);
   const auto prepare = std::chrono::steady_clock::now();
   const scene::Clip* clip = s.playback ? &s.scene.clips[s.playback->clip] : nullptr;

@@ -3,6 +3,7 @@
 
 #include <weir/execute/executor.h>
 #include <weir/gpu/device.h>
+#include <weir/scene/import.h>
 #include <weir/scene/scene.h>
 #include <weir/scene/upload.h>
 
@@ -16,8 +17,10 @@ struct StageOptions {
   std::string scene;    ///< file
   uint32_t lights = 0;  ///< `--lights N`; 0: the scene's own
   uint32_t lightSeed = 1;
-  bool replaceLights = false;                ///< drop the scene's own lights, emissive triangles included
-  std::string camera;                        ///< as `--camera`
+  bool replaceLights = false;  ///< drop the scene's own lights, emissive triangles included
+  std::string environment;     ///< file, .exr or .hdr; empty: none
+  float environmentScale = 1.0f, environmentRotation = 0.0f;  ///< degrees about +Y, counter-clockwise from above
+  std::string camera;                                         ///< as `--camera`
   bool animate = false;                      ///< `--animate`: frame i shows the clip at time + i · timeStep
   std::string clip;                          ///< name or number; empty: the first
   double time = 0.0, timeStep = 1.0 / 60.0;  ///< seconds
@@ -36,10 +39,11 @@ struct Stage {
   scene::PreparedScene prepared;
   scene::Camera camera;
   std::string sceneLabel;   ///< file name and content hash: tells pictures of different scenes apart
-  std::string lightsLabel;  ///< "scene" or "500 points, seed 1"
+  std::string lightsLabel;  ///< "scene" or "500 points, seed 1"; then the environment's name and content hash
   std::string cameraLabel;
   std::optional<Playback> playback;  ///< none: the scene stays at rest
-  double importSeconds = 0.0, prepareSeconds = 0.0;
+  scene::ImportTimes importTimes;
+  double environmentSeconds = 0.0, prepareSeconds = 0.0;
 };
 
 /// Reads, lights, arranges. `aspect`: width / height, for a camera that frames the scene. Throws InputError.

@@ -43,6 +43,11 @@ std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<
   j["scene"] = facts.scene;
   j["lights"] = facts.lights;
   j["animation"] = facts.animation;
+  if (const RunFacts::Environment& e = facts.environment; !e.file.empty()) {
+    j["environment"] = {
+        {"file", e.file},   {"size", {e.width, e.height}}, {"table", {e.columns, e.rows}}, {"integral", e.integral},
+        {"share", e.share}, {"load_seconds", e.seconds}};
+  }
   j["size"] = {graph.width, graph.height};
   j["frames"] = times.size();
   j["warmup_frames"] = warmUp;
@@ -60,12 +65,13 @@ std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<
   j["memory"] = {{"transient_bytes", facts.transientBytes},
                  {"history_bytes", facts.historyBytes},
                  {"scene_bytes", facts.sceneBytes},
-                 {"aliased_saving_bytes", 0}};
+                 {"aliased_saving_bytes", 0},
+                 {"peak_host_bytes", facts.peakHostBytes}};
   j["rays"] = facts.rays;
-  j["load_seconds"] = {{"import", facts.importSeconds},
-                       {"prepare", facts.prepareSeconds},
-                       {"upload", facts.uploadSeconds},
-                       {"compile", facts.compileSeconds}};
+  j["load_seconds"] = {{"read", facts.importTimes.read},     {"geometry", facts.importTimes.geometry},
+                       {"images", facts.importTimes.images}, {"prepare", facts.prepareSeconds},
+                       {"upload", facts.uploadSeconds},      {"acceleration", facts.accelerationSeconds},
+                       {"compile", facts.compileSeconds},    {"first_frame", facts.firstFrameSeconds}};
   return j.dump(2) + "\n";
 }
 

@@ -54,8 +54,9 @@ void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered
     if (perMaterial[m].empty()) continue;
     const PackedMaterial& material = prepared.materials[m];
     std::unique_ptr<EmissionMap> map;
+    PreparedTexture texture;
     if (material.emissiveTexture >= 0) {
-      const PreparedTexture& texture = prepared.textures[material.emissiveTexture];
+      texture = prepared.textures[material.emissiveTexture];
       map = std::make_unique<EmissionMap>(scene.images[texture.image], texture.wrapS, texture.wrapT, material.emission);
     }
     const bool doubleSided = material.flags & kMaterialDoubleSided;
@@ -68,7 +69,7 @@ void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered
       light.radiance = material.emission;
       const bool hasArea =
           setTriangle(light, prepared.positions[v[0]], prepared.positions[v[1]], prepared.positions[v[2]]);
-      const auto uv = [&](int k) { return glm::vec2(prepared.vertices[v[k]].u, prepared.vertices[v[k]].v); };
+      const auto uv = [&](int k) { return prepared.textureUv(texture, v[k]); };
       const double mean = map ? map->mean(uv(0), uv(1), uv(2)) : luminance(material.emission);
       const double radiosity = kPi * mean * (doubleSided ? 2.0 : 1.0);
       if (instance >= 0 && mean > 0.0) {
@@ -117,6 +118,14 @@ void gatherPunctual(const Scene& scene, const PreparedScene& prepared, const std
   }
 }
 
+void gatherEnvironment(const PreparedScene& prepared, Gathered& out) {
+  const double radius = prepared.bounds.radius();
+  GpuLight light;
+  light.kind = static_cast<uint32_t>(GpuLightKind::Environment);
+  // Each direction is a directional light of radiance times steradian lux.
+  keep(out, light, kPi * radius * radius * prepared.environment.integral);
+}
+
 }  // namespace
 
 bool setTriangle(GpuLight& light, const glm::vec3& p0, const glm::vec3& p1, const glm::vec3& p2) {
@@ -152,6 +161,9 @@ void gatherLights(const Scene& scene, PreparedScene& prepared, const Clip* clip)
   }
   prepared.triangleLights = static_cast<uint32_t>(gathered.lights.size());
   gatherPunctual(scene, prepared, clip != nullptr ? movingNodes(scene, *clip) : std::vector<char>(), gathered);
+  prepared.environment = tabulate(scene.environment);
+  prepared.traits.environment = scene.environment.shines();
+  gatherEnvironment(prepared, gathered);
   prepared.lights = std::move(gathered.lights);
   if (gathered.moving.empty()) {
     prepared.aliasTable = buildLightTable(gathered.power, prepared.lights);

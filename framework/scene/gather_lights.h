@@ -1,4 +1,4 @@
-// Fills PreparedScene::lights and its alias table. Internal to scene/prepare.
+// Fills PreparedScene::lights, its alias table and the environment's. Internal to scene/prepare.
 #pragma once
 
 #include <weir/scene/prepared.h>

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace weir::scene {
@@ -17,15 +18,17 @@ struct VertexSource {
 /// Triangles that will share an acceleration structure, in the space that the transforms given to add() lead to.
 class GeometryRange {
  public:
-  /// `materials` are the packed ones; the primitive's own index into them is `material`.
+  /// `scene` has its materials and traits; a primitive's own index into the packed materials is `material`.
   /// `deforms`: the vertices will move. Triangles that have no area yet are kept, and those without stored normals
   /// share no vertices, so that each can have a normal of its own in every frame.
-  explicit GeometryRange(const std::vector<PackedMaterial>& materials, bool deforms = false)
-      : materials_(materials), deforms_(deforms) {}
+  explicit GeometryRange(const PreparedScene& scene, bool deforms = false)
+      : scene_(scene), materials_(scene.materials), deforms_(deforms) {}
 
   /// Transforms and packs a primitive. Drops triangles without area (in exact terms: their doubled area vector is zero
-  /// or not a finite float) and counts them.
-  void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform);
+  /// or not a finite float) and counts them. `cornerTangents`: those of tangent_space.h, in the primitive's space, for
+  /// a primitive that has none of its own and whose material needs them; else empty.
+  void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform,
+           std::span<const glm::vec4> cornerTangents);
 
   /// Sorts opaque and alpha-tested triangles apart and spatially, renumbers vertices in order of first use, and
   /// appends everything to the scene as its next range. The range is empty afterwards. `sources`, if given, gets where
@@ -38,20 +41,20 @@ class GeometryRange {
   bool hasArea(const uint32_t (&v)[3]) const;
   uint32_t addVertex(const glm::vec3& position, const glm::vec3& normal, const glm::vec4& tangent, const glm::vec2& uv,
                      uint32_t source);
+  /// The parts of vertex i that only some scenes have; call it after addVertex().
+  void addExtras(const Primitive& primitive, uint32_t i);
 
+  const PreparedScene& scene_;
   const std::vector<PackedMaterial>& materials_;
   bool deforms_;
   uint32_t primitives_ = 0;  // added so far
   std::vector<VertexSource> sources_;
   std::vector<glm::vec3> positions_;
   std::vector<PackedVertex> vertices_;
+  std::vector<PackedColor> colors_;  // beside vertices_ where the scene has them
+  std::vector<glm::vec2> uvs1_;      // likewise
   std::vector<PackedTriangle> triangles_;
   uint64_t dropped_ = 0;
 };
-
-/// Tangent of a triangle from its texture coordinates: xyz along +U orthogonal to `normal`, w so that
-/// cross(normal, tangent)·w points up the image (towards -V), as glTF's normal maps expect.
-/// Any direction orthogonal to the normal where the coordinates are degenerate.
-glm::vec4 tangentFromUvs(const glm::vec3 (&p)[3], const glm::vec2 (&uv)[3], const glm::vec3& normal);
 
 }  // namespace weir::scene

@@ -72,9 +72,7 @@ AccessorView::AccessorView(GltfImport& import, int accessor) {
   const uint64_t one = componentSize(componentType_);
   if (one == 0) import.file.fail(place, "unknown componentType " + std::to_string(componentType_));
   elementSize_ = one * components_;
-  if (normalized_ &&
-      (componentType_ == TINYGLTF_COMPONENT_TYPE_FLOAT || componentType_ == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
-    normalized_ = false;  // means nothing there; a mild and common fault
+  dropNormalizedWhereMeaningless();
 
   // All numbers below fit in 53 bits (schema); count · stride is checked by division.
   const auto slice = [&](int view, uint64_t offset, uint64_t stride, uint64_t count, uint64_t size,
@@ -115,6 +113,22 @@ AccessorView::AccessorView(GltfImport& import, int accessor) {
     if (sparseIndices_[i] >= count_ || (i > 0 && sparseIndices_[i] <= sparseIndices_[i - 1]))
       import.file.fail(sparse + "/indices", "not strictly increasing indices below " + std::to_string(count_));
   }
+}
+
+AccessorView::AccessorView(const DracoGeometry::Attribute& attribute, uint64_t count, bool normalized)
+    : bytes_(attribute.bytes),
+      count_(count),
+      components_(attribute.components),
+      componentType_(attribute.componentType),
+      normalized_(normalized) {
+  elementSize_ = stride_ = componentSize(componentType_) * components_;
+  dropNormalizedWhereMeaningless();
+}
+
+void AccessorView::dropNormalizedWhereMeaningless() {
+  // A mild and common fault.
+  if (componentType_ == TINYGLTF_COMPONENT_TYPE_FLOAT || componentType_ == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+    normalized_ = false;
 }
 
 const uint8_t* AccessorView::element(uint64_t i) const {

@@ -196,25 +196,24 @@ void importAnimation(GltfImport& import) {
   AnimationImport(import).run();
 }
 
-void importInfluences(GltfImport& import, const tinygltf::Primitive& from, const std::vector<uint32_t>& used,
+void importInfluences(GltfImport& import, const AttributeReader& attribute, const std::vector<uint32_t>& used,
                       uint64_t vertices, const std::string& place, Primitive& to) {
-  uint32_t sets = 0;
-  while (from.attributes.contains("JOINTS_" + std::to_string(sets)) &&
-         from.attributes.contains("WEIGHTS_" + std::to_string(sets)))
-    ++sets;
-  if (sets == 0) return;
-  to.influencesPerVertex = 4 * sets;
-  import.countValues(uint64_t{8} * sets * used.size(), place);
+  std::vector<std::pair<AccessorView, AccessorView>> sets;
+  for (uint32_t s = 0;; ++s) {
+    const auto joints = attribute("JOINTS_" + std::to_string(s)), weights = attribute("WEIGHTS_" + std::to_string(s));
+    if (!joints || !weights) break;
+    for (const auto* view : {&*joints, &*weights})
+      if (view->count() != vertices)
+        import.file.fail(place + "/attributes/" + (view == &*joints ? "JOINTS_" : "WEIGHTS_") + std::to_string(s),
+                         std::to_string(view->count()) + " elements for " + std::to_string(vertices) + " positions");
+    sets.emplace_back(*joints, *weights);
+  }
+  if (sets.empty()) return;
+  to.influencesPerVertex = 4 * static_cast<uint32_t>(sets.size());
+  import.countValues(uint64_t{8} * sets.size() * used.size(), place);
   to.influences.resize(used.size() * to.influencesPerVertex);
-  for (uint32_t s = 0; s < sets; ++s) {
-    const auto read = [&](const std::string& name) {
-      AccessorView view(import, from.attributes.at(name));
-      if (view.components() != 4 || view.count() != vertices)
-        import.file.fail(place + "/attributes/" + name,
-                         "not four numbers for each of " + std::to_string(vertices) + " positions");
-      return view;
-    };
-    const AccessorView joints = read("JOINTS_" + std::to_string(s)), weights = read("WEIGHTS_" + std::to_string(s));
+  for (uint32_t s = 0; s < sets.size(); ++s) {
+    const auto& [joints, weights] = sets[s];
     for (size_t v = 0; v < used.size(); ++v) {
       for (int k = 0; k < 4; ++k) {
         Influence& influence = to.influences[v * to.influencesPerVertex + 4 * s + static_cast<uint32_t>(k)];

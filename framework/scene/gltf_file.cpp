@@ -1,4 +1,5 @@
 #include <weir/core/error.h>
+#include <weir/scene/gltf_compression.h>
 #include <weir/scene/gltf_file.h>
 
 #include <array>
@@ -209,16 +210,47 @@ std::span<const uint8_t> GltfFile::buffer(size_t index) {
   return bytes.first(length);
 }
 
-std::span<const uint8_t> GltfFile::bufferView(size_t index) {
-  const auto& entry = json_.at("bufferViews").at(index);
+namespace {
+
+/// The extension's object of some object, or null.
+const nlohmann::json* extensionOf(const nlohmann::json& object, const char* name) {
+  const auto extensions = object.find("extensions");
+  if (extensions == object.end()) return nullptr;
+  const auto found = extensions->find(name);
+  return found == extensions->end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::span<const uint8_t> GltfFile::slice(const nlohmann::json& entry, const std::string& place) {
   const auto bytes = buffer(entry.at("buffer").get<size_t>());
   const uint64_t offset = entry.value("byteOffset", uint64_t{0});
   const uint64_t length = entry.at("byteLength").get<uint64_t>();
   // Both fit in 53 bits (schema), so the sum can't wrap.
   if (offset + length > bytes.size())
-    fail("/bufferViews/" + std::to_string(index),
-         "ends at byte " + std::to_string(offset + length) + " of a buffer of " + std::to_string(bytes.size()));
+    fail(place, "ends at byte " + std::to_string(offset + length) + " of a buffer of " + std::to_string(bytes.size()));
   return bytes.subspan(offset, length);
+}
+
+std::span<const uint8_t> GltfFile::bufferView(size_t index) {
+  const auto& entry = json_.at("bufferViews").at(index);
+  const std::string place = "/bufferViews/" + std::to_string(index);
+  const auto* meshopt = extensionOf(entry, "EXT_meshopt_compression");
+  if (!meshopt) return slice(entry, place);
+
+  auto& bytes = loaded_["meshopt:" + place];
+  if (!bytes) {
+    const std::string inside = place + "/extensions/EXT_meshopt_compression";
+    const auto compressed = slice(*meshopt, inside);
+    std::string reason;
+    Bytes decoded = decodeMeshopt(*meshopt, compressed, reason);
+    if (!reason.empty()) fail(inside, reason);
+    // Many views of the same compressed bytes would multiply them.
+    if ((expandedBytes_ += decoded.size()) > kMeshoptExpansion * loadedBytes_)
+      fail(inside, "all views together expand to more than " + std::to_string(kMeshoptExpansion) + " times the files");
+    bytes = std::make_shared<const Bytes>(std::move(decoded));
+  }
+  return *bytes;
 }
 
 std::span<const uint8_t> GltfFile::image(size_t index) {

@@ -27,12 +27,13 @@ class GltfFile {
 
   /// `byteLength` bytes of buffer `index`.
   std::span<const uint8_t> buffer(size_t index);
-  /// A buffer view's bytes, checked against its buffer.
+  /// A buffer view's bytes, checked against its buffer; decoded where EXT_meshopt_compression says so.
   std::span<const uint8_t> bufferView(size_t index);
   /// An image's encoded bytes, from wherever the file keeps them.
   std::span<const uint8_t> image(size_t index);
-  /// Bytes of the file itself and of all that was loaded beside it: what a decoded size can be compared with.
-  uint64_t loadedBytes() const { return loadedBytes_; }
+  /// Bytes of the file itself, of all that was loaded beside it and decompressed: what a decoded size can be compared
+  /// with.
+  uint64_t loadedBytes() const { return loadedBytes_ + expandedBytes_; }
 
   /// Throws InputError: "<file>: <place>: <reason>".
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const;
@@ -41,14 +42,17 @@ class GltfFile {
   void splitContainer();
   void parseJson(std::span<const uint8_t> text);
   std::span<const uint8_t> resolve(const std::string& uri, const std::string& place);
+  /// Bytes that an object with buffer, byteOffset and byteLength points at.
+  std::span<const uint8_t> slice(const nlohmann::json& entry, const std::string& place);
 
   std::string path_;
   ImportLimits limits_;
   std::shared_ptr<const Bytes> file_;
   std::span<const uint8_t> binary_;  // the GLB's BIN chunk
   nlohmann::json json_;
-  std::map<std::string, std::shared_ptr<const Bytes>> loaded_;  // by canonical path or by place of a data URI
-  uint64_t loadedBytes_ = 0;
+  // By canonical path, or by place of a data URI or of a compressed view.
+  std::map<std::string, std::shared_ptr<const Bytes>> loaded_;
+  uint64_t loadedBytes_ = 0, expandedBytes_ = 0;
 };
 
 /// Whole regular file, at most `limit` bytes. Throws InputError.

@@ -14,11 +14,12 @@
 #pragma GCC diagnostic pop
 
 #include <weir/core/error.h>
+#include <weir/core/parallel.h>
 #include <weir/scene/gltf_import.h>
 
-#include <atomic>
+#include <algorithm>
 #include <memory>
-#include <thread>
+#include <string_view>
 
 namespace weir::scene {
 namespace {
@@ -39,6 +40,19 @@ int jpegScans(std::span<const uint8_t> bytes) {
   return scans;
 }
 
+/// What else the bytes are, for the message; by the formats' own first bytes.
+std::string otherFormat(std::span<const uint8_t> bytes) {
+  const auto has = [&](size_t at, std::string_view magic) {
+    return bytes.size() >= at + magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin() + at,
+                                                           [](char a, uint8_t b) { return uint8_t(a) == b; });
+  };
+  if (has(0, "\xABKTX 20")) return ": a KTX2 image (KHR_texture_basisu), which is not implemented";
+  if (has(0, "RIFF") && has(8, "WEBP")) return ": a WebP image (EXT_texture_webp), which is not implemented";
+  if (has(0, "DDS ")) return ": a DDS image (MSFT_texture_dds), which is not implemented";
+  if (has(4, "ftypavif")) return ": an AVIF image (EXT_texture_avif), which is not implemented";
+  return "";
+}
+
 }  // namespace
 
 bool checkImageHeader(std::span<const uint8_t> bytes, const ImportLimits& limits, uint32_t& width, uint32_t& height,
@@ -46,7 +60,7 @@ bool checkImageHeader(std::span<const uint8_t> bytes, const ImportLimits& limits
   int w = 0, h = 0, channels = 0;
   if (bytes.size() > 0x7fffffff ||
       !stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &w, &h, &channels)) {
-    reason = "neither PNG nor JPEG";
+    reason = "neither PNG nor JPEG" + otherFormat(bytes);
     return false;
   }
   if (w < 1 || h < 1 || static_cast<uint32_t>(w) > limits.imageSide || static_cast<uint32_t>(h) > limits.imageSide) {
@@ -73,14 +87,28 @@ std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const ImportLim
   Image image;
   if (!checkImageHeader(bytes, limits, image.width, image.height, reason)) return std::nullopt;
   int w = 0, h = 0, channels = 0;
-  const std::unique_ptr<stbi_uc, void (*)(void*)> texels(
-      stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &w, &h, &channels, 4), stbi_image_free);
+  const auto size = static_cast<int>(bytes.size());
+  const bool wide = stbi_is_16_bit_from_memory(bytes.data(), size) != 0;
+  const std::unique_ptr<void, void (*)(void*)> texels(
+      wide ? static_cast<void*>(stbi_load_16_from_memory(bytes.data(), size, &w, &h, &channels, 4))
+           : static_cast<void*>(stbi_load_from_memory(bytes.data(), size, &w, &h, &channels, 4)),
+      stbi_image_free);
   if (!texels || static_cast<uint32_t>(w) != image.width || static_cast<uint32_t>(h) != image.height) {
     const char* why = stbi_failure_reason();
     reason = std::string("can't be decoded") + (why ? std::string(" (") + why + ")" : "");
     return std::nullopt;
   }
-  image.rgba.assign(texels.get(), texels.get() + static_cast<size_t>(w) * h * 4);
+  const size_t values = static_cast<size_t>(w) * h * 4;
+  if (wide) {
+    // Rounded, where stb itself would cut the lower byte off: 16 bits hold 257 times an 8-bit value.
+    const auto* from = static_cast<const uint16_t*>(texels.get());
+    image.rgba.resize(values);
+    std::transform(from, from + values, image.rgba.begin(),
+                   [](uint16_t v) { return static_cast<uint8_t>((v + 128u) / 257u); });
+  } else {
+    const auto* from = static_cast<const uint8_t*>(texels.get());
+    image.rgba.assign(from, from + values);
+  }
   return image;
 }
 
@@ -88,8 +116,7 @@ void importImages(GltfImport& import) {
   Scene& scene = import.scene;
   std::vector<char> used(scene.images.size(), 0);
   for (const Material& material : scene.materials)
-    for (const TextureSlot* slot : {&material.baseColorTexture, &material.metallicRoughnessTexture,
-                                    &material.normalTexture, &material.emissiveTexture})
+    for (const TextureSlot* slot : material.slots())
       if (*slot) used[scene.textures[slot->texture].image] = 1;
 
   // Finding bytes may read files and throws; that and the size checks stay on this thread.
@@ -112,28 +139,14 @@ void importImages(GltfImport& import) {
     work.push_back({i, bytes});
   }
 
-  std::vector<std::string> reasons(work.size());
-  std::atomic<size_t> next{0};
-  const auto decode = [&] {
-    for (size_t i; (i = next++) < work.size();) {
-      try {
-        std::optional<Image> image = decodeImage(work[i].bytes, import.limits, reasons[i]);
-        if (!image) continue;
-        image->name = std::move(scene.images[work[i].image].name);
-        scene.images[work[i].image] = std::move(*image);
-      } catch (const std::exception& e) {
-        reasons[i] = e.what();
-      }
-    }
-  };
-  const size_t threads = std::min<size_t>(std::max(1u, std::thread::hardware_concurrency()), work.size());
-  {
-    std::vector<std::jthread> pool;
-    for (size_t i = 1; i < threads; ++i) pool.emplace_back(decode);
-    decode();
-  }
-  for (size_t i = 0; i < work.size(); ++i)
-    if (!reasons[i].empty()) import.file.fail("/images/" + std::to_string(work[i].image), reasons[i]);
+  // Each image is its own; of several broken ones the first in the file is reported.
+  parallelFor(work.size(), [&](size_t i) {
+    std::string reason;
+    std::optional<Image> image = decodeImage(work[i].bytes, import.limits, reason);
+    if (!image) import.file.fail("/images/" + std::to_string(work[i].image), reason);
+    image->name = std::move(scene.images[work[i].image].name);
+    scene.images[work[i].image] = std::move(*image);
+  });
 }
 
 }  // namespace weir::scene

@@ -1,10 +1,13 @@
 // What the importer's parts share. Internal to scene/import.
 #pragma once
 
+#include <weir/scene/gltf_compression.h>
 #include <weir/scene/gltf_file.h>
 #include <weir/scene/scene.h>
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,14 +23,19 @@
 
 namespace weir::scene {
 
+/// Extensions that give a texture another kind of image; the plain source, if there is one, is used instead.
+inline constexpr std::array<const char*, 4> kOtherImageFormats = {"KHR_texture_basisu", "EXT_texture_webp",
+                                                                  "MSFT_texture_dds", "EXT_texture_avif"};
+
 /// State of one import. The parts below fill `scene` in the order: materials, meshes, animation, nodes, images.
 struct GltfImport {
   GltfFile& file;
   const tinygltf::Model& model;
   const ImportLimits& limits;
   Scene& scene;
-  std::vector<int> materialUvSet;  ///< per material: the UV set that its textures read
-  uint64_t animationValues = 0;    ///< numbers read so far for morph targets and animations
+  /// Per material: the file's UV sets that become uv0 and uv1, -1: none.
+  std::vector<std::array<int, 2>> materialUvSets;
+  uint64_t animationValues = 0;  ///< numbers read so far for morph targets and animations
 
   /// Counts such numbers. A file that refers to the same bytes over and over must not fill the memory.
   void countValues(uint64_t count, const std::string& place);
@@ -45,6 +53,8 @@ tinygltf::Model parseStructure(const GltfFile& file);
 class AccessorView {
  public:
   AccessorView(GltfImport& import, int accessor);
+  /// What Draco holds in the accessor's place; `attribute` must outlive the view.
+  AccessorView(const DracoGeometry::Attribute& attribute, uint64_t count, bool normalized);
 
   uint64_t count() const { return count_; }
   int components() const { return components_; }
@@ -56,6 +66,7 @@ class AccessorView {
   uint32_t index(uint64_t i) const;
 
  private:
+  void dropNormalizedWhereMeaningless();
   const uint8_t* element(uint64_t i) const;
 
   std::span<const uint8_t> bytes_;  // empty: all zeros
@@ -67,9 +78,12 @@ class AccessorView {
   uint64_t elementSize_ = 0;
 };
 
+/// A primitive's attribute of that name, four components; none where it has no such attribute.
+using AttributeReader = std::function<std::optional<AccessorView>(const std::string&)>;
+
 /// Influences (JOINTS_n, WEIGHTS_n) and morph targets of a primitive's vertices; `used` says which of the file's
 /// `vertices` those are, `place` where in the JSON the primitive is.
-void importInfluences(GltfImport& import, const tinygltf::Primitive& from, const std::vector<uint32_t>& used,
+void importInfluences(GltfImport& import, const AttributeReader& attribute, const std::vector<uint32_t>& used,
                       uint64_t vertices, const std::string& place, Primitive& to);
 void importTargets(GltfImport& import, const std::vector<uint32_t>& used, uint64_t vertices, const std::string& place,
                    Primitive& to);

@@ -2,7 +2,7 @@
 #include <weir/scene/gltf_import.h>
 
 #include <cmath>
-#include <limits>
+#include <map>
 
 namespace weir::scene {
 namespace {
@@ -33,6 +33,7 @@ class MeshImport {
       for (size_t p = 0; p < from.primitives.size(); ++p) {
         place_ = "/meshes/" + std::to_string(m) + "/primitives/" + std::to_string(p);
         Primitive primitive;
+        json_ = &import_.file.json().at("meshes")[m].at("primitives")[p];
         if (importPrimitive(from.primitives[p], primitive)) mesh.primitives.push_back(std::move(primitive));
       }
       import_.scene.meshes.push_back(std::move(mesh));
@@ -40,11 +41,19 @@ class MeshImport {
   }
 
  private:
+  /// From where the primitive's data is: compressed attributes have accessors without bytes.
+  AccessorView accessor(const std::string& name, int index) {
+    if (draco_)
+      if (const auto found = draco_->attributes.find(name); found != draco_->attributes.end())
+        return {found->second, draco_->vertices, import_.model.accessors[index].normalized};
+    return {import_, index};
+  }
+
   std::optional<AccessorView> attribute(const tinygltf::Primitive& from, const std::string& name, int least, int most) {
     const auto found = from.attributes.find(name);
     if (found == from.attributes.end()) return std::nullopt;
-    AccessorView view(import_, found->second);
     const std::string place = place_ + "/attributes/" + name;
+    const AccessorView view = accessor(name, found->second);
     if (view.components() < least || view.components() > most)
       import_.file.fail(place,
                         "has " + std::to_string(view.components()) + " components instead of " + std::to_string(least));
@@ -53,8 +62,37 @@ class MeshImport {
     return view;
   }
 
+  /// A file that refers to the same bytes over and over must not fill the memory: no honest file has more triangles
+  /// than bytes, and a million is free.
+  uint64_t trianglesLeft() const {
+    return std::min<uint64_t>(import_.limits.triangles, (1u << 20) + import_.file.loadedBytes()) - triangles_;
+  }
+  void countTriangles(uint64_t count) {
+    if (count > trianglesLeft())
+      import_.file.fail(place_, "more triangles than " + std::to_string(triangles_ + trianglesLeft()));
+    triangles_ += count;
+  }
+
+  void decompress() {
+    draco_.reset();
+    const auto extensions = json_->find("extensions");
+    if (extensions == json_->end() || !extensions->contains("KHR_draco_mesh_compression")) return;
+    const auto& extension = extensions->at("KHR_draco_mesh_compression");
+    std::string reason;
+    draco_ = decodeDraco(import_.file.bufferView(extension.at("bufferView").get<size_t>()),
+                         extension.at("attributes").get<std::map<std::string, uint32_t>>(), trianglesLeft(), reason);
+    if (!reason.empty()) import_.file.fail(place_ + "/extensions/KHR_draco_mesh_compression", reason);
+  }
+
   /// Three indices a triangle, checked against the number of vertices; the file's, before unused vertices are left out.
   std::vector<uint32_t> readTriangles(const tinygltf::Primitive& from, uint64_t vertices) {
+    if (draco_ && vertices != draco_->vertices)
+      import_.file.fail(place_, std::to_string(vertices) + " positions for " + std::to_string(draco_->vertices) +
+                                    " compressed vertices");
+    if (draco_) {
+      countTriangles(draco_->indices.size() / 3);
+      return std::move(draco_->indices);
+    }
     std::optional<AccessorView> indices;
     if (from.indices >= 0) {
       indices.emplace(import_, from.indices);
@@ -68,13 +106,7 @@ class MeshImport {
     const bool list = from.mode == TINYGLTF_MODE_TRIANGLES;
     if (list && n % 3) import_.warn("a triangle list whose length is no multiple of three ends early");
     const uint64_t count = list ? n / 3 : n < 3 ? 0 : n - 2;
-    // A file that refers to the same bytes over and over must not fill the memory: no honest file has more
-    // triangles than bytes, and a million is free.
-    triangles_ += count;
-    if (triangles_ > import_.limits.triangles || triangles_ > (1u << 20) + import_.file.loadedBytes())
-      import_.file.fail(
-          place_, "more triangles than " + std::to_string(std::min<uint64_t>(import_.limits.triangles,
-                                                                             (1u << 20) + import_.file.loadedBytes())));
+    countTriangles(count);
     const auto at = [&](uint64_t i) {
       const uint64_t index = indices ? indices->index(i) : i;
       if (index >= vertices)
@@ -124,13 +156,13 @@ class MeshImport {
       import_.warn("points and lines are left out");
       return false;
     }
+    decompress();
     const auto positions = attribute(from, "POSITION", 3, 3);
     if (!positions) {
       import_.warn("a primitive without positions is left out");
       return false;
     }
     if (positions->count() >= kUnused) import_.file.fail(place_, "more than 32 bits of vertices");
-    if (from.attributes.contains("COLOR_0")) import_.warn("vertex colours are not implemented and ignored");
     to.material = from.material;
     to.indices = readTriangles(from, positions->count());
     const std::vector<uint32_t> used = compact(to.indices, positions->count());
@@ -145,8 +177,14 @@ class MeshImport {
       }
     readNormals(from, used, positions->count(), to);
     readTangents(from, used, positions->count(), to);
-    readUvs(from, used, positions->count(), to);
-    importInfluences(import_, from, used, positions->count(), place_, to);
+    const std::array<int, 2> sets =
+        from.material >= 0 ? import_.materialUvSets[from.material] : std::array<int, 2>{0, -1};
+    readUvs(from, sets[0], used, positions->count(), to.uv0);
+    readUvs(from, sets[1], used, positions->count(), to.uv1);
+    readColors(from, used, positions->count(), to);
+    importInfluences(
+        import_, [&](const std::string& name) { return attribute(from, name, 4, 4); }, used, positions->count(), place_,
+        to);
     importTargets(import_, used, positions->count(), place_, to);
     return true;
   }
@@ -202,25 +240,48 @@ class MeshImport {
     }
   }
 
-  void readUvs(const tinygltf::Primitive& from, const std::vector<uint32_t>& used, uint64_t vertices, Primitive& to) {
-    const int set = from.material >= 0 ? import_.materialUvSet[from.material] : 0;
+  void readUvs(const tinygltf::Primitive& from, int set, const std::vector<uint32_t>& used, uint64_t vertices,
+               std::vector<glm::vec2>& to) {
     const std::string name = "TEXCOORD_" + std::to_string(set);
     const auto uvs = attribute(from, name, 2, 2);
     if (!uvs) return;
     sameCount(*uvs, vertices, name.c_str());
-    to.uv0.reserve(used.size());
+    to.reserve(used.size());
     for (uint32_t i : used) {
       glm::vec2 uv(uvs->value(i, 0), uvs->value(i, 1));
       if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
         import_.warn("some texture coordinates are not finite and taken as 0");
         uv = glm::vec2(0.0f);
       }
-      to.uv0.push_back(uv);
+      to.push_back(uv);
     }
+  }
+
+  void readColors(const tinygltf::Primitive& from, const std::vector<uint32_t>& used, uint64_t vertices,
+                  Primitive& to) {
+    const auto colors = attribute(from, "COLOR_0", 3, 4);
+    if (!colors) return;
+    sameCount(*colors, vertices, "COLOR_0");
+    to.colors.reserve(used.size());
+    bool white = true;
+    for (uint32_t i : used) {
+      glm::vec4 color(1.0f);
+      for (int c = 0; c < colors->components(); ++c) color[c] = colors->value(i, c);
+      for (int c = 0; c < 4; ++c)
+        if (!(color[c] >= 0.0f && color[c] <= 1.0f)) {
+          import_.warn("vertex colours outside of 0 to 1 are clamped");
+          color[c] = color[c] > 0.0f ? 1.0f : 0.0f;
+        }
+      white = white && color == glm::vec4(1.0f);
+      to.colors.push_back(color);
+    }
+    if (white) to.colors.clear();  // says nothing, and would cost every lookup of the scene
   }
 
   GltfImport& import_;
   std::string place_;
+  const nlohmann::json* json_ = nullptr;  // of the primitive at hand, as is
+  std::optional<DracoGeometry> draco_;    // what it holds compressed
   uint64_t triangles_ = 0;
   std::vector<uint32_t> remap_;
 };

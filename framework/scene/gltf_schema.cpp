@@ -18,6 +18,7 @@ enum class Kind {
   IndexMap,
   IndexMaps,
   Integer,
+  Integers,
   Number,
   Numbers,
   String,
@@ -83,22 +84,48 @@ const std::vector<Rule>& rootRules() {
                                              object("sparse", sparse),
                                              text("name")};
   static const std::vector<Rule> buffer = {integer("byteLength", 1, kMaxSize, true), text("uri"), text("name")};
-  static const std::vector<Rule> bufferView = {
-      index("buffer", "buffers", true), integer("byteOffset", 0, kMaxSize), integer("byteLength", 1, kMaxSize, true),
-      integer("byteStride", 4, 252),    integer("target", 0, kMaxInt),      text("name")};
+  static const std::vector<Rule> meshopt = {index("buffer", "buffers", true),
+                                            integer("byteOffset", 0, kMaxSize),
+                                            integer("byteLength", 1, kMaxSize, true),
+                                            integer("byteStride", 1, 256, true),
+                                            integer("count", 1, kMaxInt, true),
+                                            text("mode", true),
+                                            text("filter")};
+  static const std::vector<Rule> viewExtensions = {object("EXT_meshopt_compression", meshopt)};
+  static const std::vector<Rule> bufferView = {index("buffer", "buffers", true),
+                                               integer("byteOffset", 0, kMaxSize),
+                                               integer("byteLength", 1, kMaxSize, true),
+                                               integer("byteStride", 4, 252),
+                                               integer("target", 0, kMaxInt),
+                                               object("extensions", viewExtensions),
+                                               text("name")};
   static const std::vector<Rule> perspective = {number("yfov", true), number("znear", true), number("aspectRatio"),
                                                 number("zfar")};
   static const std::vector<Rule> camera = {text("type", true), object("perspective", perspective),
                                            object("orthographic", nothing), text("name")};
   static const std::vector<Rule> image = {index("bufferView", "bufferViews"), text("uri"), text("mimeType"),
                                           text("name")};
+  static const std::vector<Rule> textureTransform = {numbers("offset", 2), number("rotation"), numbers("scale", 2),
+                                                     integer("texCoord", 0, kMaxInt)};
+  static const std::vector<Rule> textureInfoExtensions = {object("KHR_texture_transform", textureTransform)};
   static const std::vector<Rule> textureInfo = {index("index", "textures", true), integer("texCoord", 0, kMaxInt),
-                                                number("scale"), number("strength"), object("extensions", nothing)};
+                                                number("scale"), number("strength"),
+                                                object("extensions", textureInfoExtensions)};
   static const std::vector<Rule> metallic = {numbers("baseColorFactor", 4), number("metallicFactor"),
                                              number("roughnessFactor"), object("baseColorTexture", textureInfo),
                                              object("metallicRoughnessTexture", textureInfo)};
   static const std::vector<Rule> strength = {number("emissiveStrength")};
-  static const std::vector<Rule> materialExtensions = {object("KHR_materials_emissive_strength", strength)};
+  static const std::vector<Rule> glossiness = {numbers("diffuseFactor", 4), numbers("specularFactor", 3),
+                                               number("glossinessFactor"), object("diffuseTexture", textureInfo),
+                                               object("specularGlossinessTexture", textureInfo)};
+  static const std::vector<Rule> ior = {number("ior")};
+  static const std::vector<Rule> specular = {number("specularFactor"), numbers("specularColorFactor", 3),
+                                             object("specularTexture", textureInfo),
+                                             object("specularColorTexture", textureInfo)};
+  static const std::vector<Rule> materialExtensions = {
+      object("KHR_materials_emissive_strength", strength), object("KHR_materials_ior", ior),
+      object("KHR_materials_pbrSpecularGlossiness", glossiness), object("KHR_materials_specular", specular),
+      object("KHR_materials_unlit", nothing)};
   static const std::vector<Rule> material = {object("pbrMetallicRoughness", metallic),
                                              object("normalTexture", textureInfo),
                                              object("occlusionTexture", textureInfo),
@@ -109,12 +136,15 @@ const std::vector<Rule>& rootRules() {
                                              {"doubleSided", Kind::Bool},
                                              object("extensions", materialExtensions),
                                              text("name")};
+  static const std::vector<Rule> draco = {index("bufferView", "bufferViews", true),
+                                          {"attributes", Kind::Integers, true, nullptr, 0, kMaxInt}};
+  static const std::vector<Rule> primitiveExtensions = {object("KHR_draco_mesh_compression", draco)};
   static const std::vector<Rule> primitive = {{"attributes", Kind::IndexMap, true, "accessors"},
                                               index("indices", "accessors"),
                                               index("material", "materials"),
                                               integer("mode", 0, 6),
                                               {"targets", Kind::IndexMaps, false, "accessors"},
-                                              object("extensions", nothing)};
+                                              object("extensions", primitiveExtensions)};
   static const std::vector<Rule> mesh = {objects("primitives", primitive, true), numbers("weights", 0), text("name")};
   static const std::vector<Rule> skin = {{"joints", Kind::Indices, true, "nodes"},
                                          index("inverseBindMatrices", "accessors"),
@@ -142,7 +172,8 @@ const std::vector<Rule>& rootRules() {
                                          text("name")};
   static const std::vector<Rule> sampler = {integer("magFilter", 0, kMaxInt), integer("minFilter", 0, kMaxInt),
                                             integer("wrapS", 0, kMaxInt), integer("wrapT", 0, kMaxInt), text("name")};
-  static const std::vector<Rule> texture = {index("sampler", "samplers"), index("source", "images"), text("name")};
+  static const std::vector<Rule> texture = {index("sampler", "samplers"), index("source", "images"),
+                                            object("extensions", nothing), text("name")};
   static const std::vector<Rule> scene = {{"nodes", Kind::Indices, false, "nodes"}, text("name")};
   static const std::vector<Rule> asset = {text("version", true), text("minVersion")};
   static const std::vector<Rule> spot = {number("innerConeAngle"), number("outerConeAngle")};
@@ -202,6 +233,10 @@ class Checker {
     if (number < low || number > high) fail(place, what, value);
   }
 
+  static std::string range(const Rule& rule) {
+    return "an integer from " + std::to_string(int64_t(rule.low)) + " to " + std::to_string(int64_t(rule.high));
+  }
+
   void checkIndex(const json& value, const char* target, const std::string& place) const {
     const auto array = file_.json().find(target);
     const size_t size = array != file_.json().end() && array->is_array() ? array->size() : 0;
@@ -239,10 +274,12 @@ class Checker {
         }
         return;
       case Kind::Integer:
-        return checkInteger(
-            value, rule.low, rule.high,
-            "an integer from " + std::to_string(int64_t(rule.low)) + " to " + std::to_string(int64_t(rule.high)),
-            place);
+        return checkInteger(value, rule.low, rule.high, range(rule), place);
+      case Kind::Integers:
+        if (!value.is_object()) fail(place, "an object", value);
+        for (const auto& [key, entry] : value.items())
+          checkInteger(entry, rule.low, rule.high, range(rule), place + "/" + key);
+        return;
       case Kind::Number:
         return checkNumber(value, place);
       case Kind::Numbers:

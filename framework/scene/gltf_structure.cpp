@@ -28,7 +28,11 @@ tinygltf::Model parseStructure(const GltfFile& file) {
   for (const char* key : {"buffers", "images", "animations", "skins"}) json.erase(key);
   if (const auto meshes = json.find("meshes"); meshes != json.end())
     for (auto& mesh : *meshes)
-      for (auto& primitive : mesh.at("primitives")) primitive.erase("targets");
+      for (auto& primitive : mesh.at("primitives")) {
+        primitive.erase("targets");
+        // It refuses indices without a buffer view, as compressed and sparse ones are; they are put back below.
+        primitive.erase("indices");
+      }
   eraseExtras(json);
 
   tinygltf::Model model;
@@ -57,9 +61,13 @@ tinygltf::Model parseStructure(const GltfFile& file) {
   same("samplers", model.samplers.size());
   same("scenes", model.scenes.size());
   same("textures", model.textures.size());
-  for (size_t i = 0; i < model.meshes.size(); ++i)
-    if (model.meshes[i].primitives.size() != json["meshes"][i]["primitives"].size())
+  for (size_t i = 0; i < model.meshes.size(); ++i) {
+    const auto& primitives = file.json()["meshes"][i]["primitives"];
+    if (model.meshes[i].primitives.size() != primitives.size())
       file.fail("/meshes/" + std::to_string(i), "not understood");
+    for (size_t p = 0; p < primitives.size(); ++p)
+      model.meshes[i].primitives[p].indices = primitives[p].value("indices", -1);
+  }
   return model;
 }
 

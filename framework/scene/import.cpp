@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <string_view>
+#include <utility>
 
 namespace weir::scene {
 namespace {
 
-constexpr std::array<std::string_view, 3> kImplemented = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                          "KHR_mesh_quantization"};
+constexpr auto kImplemented = std::to_array<std::string_view>(
+    {"EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_emissive_strength",
+     "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular", "KHR_materials_unlit",
+     "KHR_mesh_quantization", "KHR_texture_transform"});
 
 bool implemented(const std::string& name) {
   return std::find(kImplemented.begin(), kImplemented.end(), name) != kImplemented.end();
@@ -36,8 +40,14 @@ void refuseRequiredExtensions(const GltfFile& file) {
 void warnAboutExtensions(GltfImport& import) {
   const auto used = import.file.json().find("extensionsUsed");
   if (used == import.file.json().end()) return;
+  // Textures say themselves what becomes of another kind of image.
+  const auto saysItself = [&](const std::string& name) {
+    return std::find(kOtherImageFormats.begin(), kOtherImageFormats.end(), name) != kOtherImageFormats.end() &&
+           std::any_of(import.model.textures.begin(), import.model.textures.end(),
+                       [&](const tinygltf::Texture& t) { return t.extensions.contains(name); });
+  };
   for (const auto& name : *used)
-    if (!implemented(name.get<std::string>()))
+    if (!implemented(name.get<std::string>()) && !saysItself(name.get<std::string>()))
       import.warn("extension " + name.get<std::string>() + " is not implemented and ignored");
 }
 
@@ -56,7 +66,14 @@ void GltfImport::countValues(uint64_t count, const std::string& place) {
     file.fail(place, "more than " + std::to_string(most) + " numbers of animations and morph targets");
 }
 
-Scene importGltf(const std::string& path, const ImportLimits& limits) {
+Scene importGltf(const std::string& path, const ImportLimits& limits, ImportTimes* times) {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last = Clock::now();
+  // Seconds since the last call.
+  const auto lap = [&] {
+    return std::chrono::duration<double>(Clock::now() - std::exchange(last, Clock::now())).count();
+  };
+  ImportTimes spent;
   GltfFile file(path, limits);
   try {
     checkGltfSchema(file);
@@ -68,10 +85,14 @@ Scene importGltf(const std::string& path, const ImportLimits& limits) {
     GltfImport import{file, model, limits, scene, {}};
     warnAboutExtensions(import);
     importMaterials(import);
+    spent.read = lap();
     importMeshes(import);
     importAnimation(import);
     importNodes(import);
+    spent.geometry = lap();
     importImages(import);
+    spent.images = lap();
+    if (times) *times = spent;
     return scene;
   } catch (const InputError&) {
     throw;

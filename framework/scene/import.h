@@ -17,9 +17,17 @@ struct ImportLimits {
   uint32_t nodeDepth = 1024;
 };
 
+/// Where the time of an import went, in seconds.
+struct ImportTimes {
+  double read = 0.0;      ///< files, JSON and its checks, materials
+  double geometry = 0.0;  ///< meshes and nodes
+  double images = 0.0;    ///< decoding
+};
+
 /// Reads a .gltf or .glb. Every accessor is checked against its buffer in 64 bits, every URI stays inside the
 /// scene's folder, unknown entries of `extensionsRequired` are refused by name and unknown optional ones are warned
 /// about. Throws InputError with file, JSON place and reason.
-Scene importGltf(const std::string& path, const ImportLimits& limits = {});
+/// `times`, where given, says afterwards how long it took.
+Scene importGltf(const std::string& path, const ImportLimits& limits = {}, ImportTimes* times = nullptr);
 
 }  // namespace weir::scene

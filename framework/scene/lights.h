@@ -9,7 +9,7 @@
 namespace weir::scene {
 
 /// Kinds in GpuLight::kind, as in shaders/common/lights.glsl.
-enum class GpuLightKind : uint32_t { Point = 0, Spot = 1, Directional = 2, Triangle = 3 };
+enum class GpuLightKind : uint32_t { Point = 0, Spot = 1, Directional = 2, Triangle = 3, Environment = 4 };
 inline constexpr uint32_t kLightDoubleSided = 1u << 8;
 inline constexpr uint32_t kLightTextured = 1u << 9;
 /// Corners 1 and 2 have changed places, since the triangle's instance mirrors: only lights that move.
@@ -19,6 +19,7 @@ inline constexpr uint32_t kLightTurned = 1u << 10;
 /// Triangle: position = vertex 0, a = edge to vertex 1, b = edge to vertex 2 (world), radiance in nit.
 /// Point and spot: position; a = direction of travel; b.x = 1/(cos inner - cos outer), b.y = cos outer,
 /// b.z = range (0: none); radiance = candela. Directional: a = direction of travel; radiance = lux.
+/// Environment: nothing but its kind; scene/environment.h has the rest.
 struct GpuLight {
   glm::vec3 position{0.0f};
   uint32_t kind = 0;  ///< GpuLightKind, or-ed with kLight... flags

@@ -175,10 +175,13 @@ bool deforms(const Scene& scene, const Instance& instance, const Primitive& prim
 
 Primitive deformed(const Primitive& primitive, const std::vector<float>& weights, const std::vector<glm::mat4>* joints,
                    bool mirrors) {
-  Primitive out;
-  out.uv0 = primitive.uv0;
-  out.indices = primitive.indices;
-  out.material = primitive.material;
+  Primitive out = primitive;  // whatever else a vertex has stays with it
+  out.positions.clear();
+  out.normals.clear();
+  out.tangents.clear();
+  out.influencesPerVertex = 0;
+  out.influences.clear();
+  out.targets.clear();
   const size_t count = primitive.positions.size();
   const bool normals = !primitive.normals.empty(), tangents = !primitive.tangents.empty();
   const bool skinned = joints != nullptr && primitive.influencesPerVertex > 0;

@@ -1,49 +1,19 @@
+#include <weir/core/parallel.h>
 #include <weir/scene/gather_lights.h>
 #include <weir/scene/geometry_range.h>
+#include <weir/scene/prepare_materials.h>
 #include <weir/scene/prepare_motion.h>
 #include <weir/scene/prepared.h>
 #include <weir/scene/spatial_sort.h>
+#include <weir/scene/tangent_space.h>
 
 #include <algorithm>
 #include <array>
 #include <map>
+#include <unordered_map>
 
 namespace weir::scene {
 namespace {
-
-/// Index of the texture as a slot uses it; equal uses share one.
-int32_t prepareTexture(const Scene& scene, const TextureSlot& slot, bool srgb, PreparedScene& prepared) {
-  if (!slot) return -1;
-  const Texture& from = scene.textures[slot.texture];
-  if (from.image < 0 || scene.images[from.image].rgba.empty()) return -1;
-  const PreparedTexture texture{from.image, srgb, from.wrapS, from.wrapT, from.magFilter, from.minFilter};
-  const auto same = [&](const PreparedTexture& t) {
-    return t.image == texture.image && t.srgb == texture.srgb && t.wrapS == texture.wrapS && t.wrapT == texture.wrapT &&
-           t.magFilter == texture.magFilter && t.minFilter == texture.minFilter;
-  };
-  const auto found = std::find_if(prepared.textures.begin(), prepared.textures.end(), same);
-  if (found != prepared.textures.end()) return static_cast<int32_t>(found - prepared.textures.begin());
-  prepared.textures.push_back(texture);
-  return static_cast<int32_t>(prepared.textures.size() - 1);
-}
-
-PackedMaterial packMaterial(const Scene& scene, const Material& from, PreparedScene& prepared) {
-  PackedMaterial m;
-  m.baseColor = from.baseColor;
-  m.emission = from.emission;
-  m.alphaCutoff = from.alphaCutoff;
-  m.metallic = from.metallic;
-  m.roughness = from.roughness;
-  m.normalScale = from.normalScale;
-  m.flags = (from.alphaMode == AlphaMode::Mask ? kMaterialMask : 0u) |
-            (from.alphaMode == AlphaMode::Blend ? kMaterialBlend : 0u) |
-            (from.doubleSided ? kMaterialDoubleSided : 0u) | (from.isEmissive() ? kMaterialEmissive : 0u);
-  m.baseColorTexture = prepareTexture(scene, from.baseColorTexture, true, prepared);
-  m.metallicRoughnessTexture = prepareTexture(scene, from.metallicRoughnessTexture, false, prepared);
-  m.normalTexture = prepareTexture(scene, from.normalTexture, false, prepared);
-  m.emissiveTexture = from.isEmissive() ? prepareTexture(scene, from.emissiveTexture, true, prepared) : -1;
-  return m;
-}
 
 /// The importer's -1 is the default material, which is packed last.
 uint32_t packedIndex(const PreparedScene& prepared, const Primitive& primitive) {
@@ -60,13 +30,60 @@ bool isInstanced(const Scene& scene, const Mesh& mesh, uint64_t uses, const Prep
   return uses >= limits.mergeUses && uses * triangles > limits.mergeTriangles;
 }
 
+/// Where each vertex of a primitive reads a texture; empty: the primitive has no such coordinates.
+std::vector<glm::vec2> coordinatesOf(const Primitive& primitive, const PreparedTexture& texture) {
+  std::vector<glm::vec2> uvs = texture.uvSet == 1 ? primitive.uv1 : primitive.uv0;
+  if (!texture.transform.isIdentity())
+    for (glm::vec2& uv : uvs) uv = texture.transform(uv);
+  return uvs;
+}
+
+/// Tangents of a primitive that lacks them although its material has a normal map; else empty.
+std::vector<glm::vec4> tangentsOf(const PreparedScene& prepared, const Primitive& p) {
+  const size_t count = p.positions.size();
+  const bool given = p.normals.size() == count && p.tangents.size() == count;
+  const int32_t map = prepared.materials[packedIndex(prepared, p)].normalTexture;
+  if (given || map < 0) return {};
+  return cornerTangents(p.positions, p.normals, coordinatesOf(p, prepared.textures[map]), p.indices);
+}
+
+/// Tangents of the primitives that lack them although their material has a normal map; once for all their instances.
+class MissingTangents {
+ public:
+  MissingTangents(const Scene& scene, const PreparedScene& prepared, const std::vector<size_t>& uses) {
+    std::vector<std::pair<const Primitive*, std::vector<glm::vec4>*>> work;
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+      for (const Primitive& primitive : scene.meshes[m].primitives) {
+        const size_t count = primitive.positions.size();
+        const bool given = primitive.normals.size() == count && primitive.tangents.size() == count;
+        if (uses[m] > 0 && !given && prepared.materials[packedIndex(prepared, primitive)].normalTexture >= 0)
+          work.emplace_back(&primitive, &tangents_[&primitive]);
+      }
+    parallelFor(work.size(), [&](size_t i) { *work[i].second = tangentsOf(prepared, *work[i].first); });
+  }
+  /// Empty for any other primitive.
+  std::span<const glm::vec4> of(const Primitive& primitive) const {
+    const auto found = tangents_.find(&primitive);
+    return found == tangents_.end() ? std::span<const glm::vec4>() : std::span<const glm::vec4>(found->second);
+  }
+
+ private:
+  std::unordered_map<const Primitive*, std::vector<glm::vec4>> tangents_;
+};
+
 /// Geometry that goes into two ranges, by the sides of its materials.
 class SidedRanges {
  public:
-  explicit SidedRanges(const std::vector<PackedMaterial>& materials)
-      : materials_(materials), ranges_{GeometryRange(materials), GeometryRange(materials)} {}
+  SidedRanges(const PreparedScene& prepared, const MissingTangents& tangents)
+      : materials_(prepared.materials),
+        tangents_(tangents),
+        ranges_{GeometryRange(prepared), GeometryRange(prepared)} {}
   void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform) {
-    ranges_[side(material)].add(primitive, material, transform);
+    add(primitive, material, transform, tangents_.of(primitive));
+  }
+  void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform,
+           std::span<const glm::vec4> tangents) {
+    ranges_[side(material)].add(primitive, material, transform, tangents);
   }
   size_t side(uint32_t material) const { return (materials_[material].flags & kMaterialDoubleSided) != 0 ? 1 : 0; }
   /// Appends both ranges, empty or not; their numbers.
@@ -82,6 +99,7 @@ class SidedRanges {
 
  private:
   const std::vector<PackedMaterial>& materials_;
+  const MissingTangents& tangents_;
   std::array<GeometryRange, 2> ranges_;
 };
 
@@ -111,15 +129,24 @@ void placeInstances(const std::vector<Placed>& unsorted, PreparedScene& prepared
   for (const SortItem& item : items) prepared.instances.push_back(unsorted[item.index].instance);
 }
 
+std::vector<size_t> usesOfMeshes(const Scene& scene) {
+  std::vector<size_t> uses(scene.meshes.size(), 0);
+  for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+  return uses;
+}
+
 /// Arranges the geometry: what is merged, what is shared, what moves.
 class Arrangement {
  public:
   Arrangement(const Scene& scene, const Clip* clip, const PrepareLimits& limits, PreparedScene& prepared)
-      : scene_(scene), plan_(scene, clip), prepared_(prepared), merged_(prepared.materials) {
-    std::vector<size_t> uses(scene.meshes.size(), 0);
-    for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+      : scene_(scene),
+        plan_(scene, clip),
+        prepared_(prepared),
+        uses_(usesOfMeshes(scene)),
+        tangents_(scene, prepared, uses_),
+        merged_(prepared, tangents_) {
     for (size_t m = 0; m < scene.meshes.size(); ++m)
-      shared_.push_back(isInstanced(scene, scene.meshes[m], uses[m], limits) ? 1 : 0);
+      shared_.push_back(isInstanced(scene, scene.meshes[m], uses_[m], limits) ? 1 : 0);
   }
 
   void run() {
@@ -177,7 +204,7 @@ class Arrangement {
     }
     glm::dmat4 toWorld;
     const Primitive shape = plan_.restShape(instance, primitive, toWorld);
-    ranges.add(shape, material, inWorld ? toWorld : glm::dmat4(1.0));
+    ranges.add(shape, material, inWorld ? toWorld : glm::dmat4(1.0), tangentsOf(prepared_, shape));
   }
 
   void place(uint32_t range, const Instance& instance) {
@@ -191,7 +218,7 @@ class Arrangement {
   void placeShared(const Instance& instance) {
     const auto [entry, fresh] = rangesOf_.try_emplace(instance.mesh);
     if (fresh) {
-      SidedRanges own(prepared_.materials);
+      SidedRanges own(prepared_, tangents_);
       for (const Primitive& primitive : primitivesOf(instance)) addTo(own, instance, primitive, false);
       entry->second = own.finish(prepared_);
     }
@@ -200,7 +227,7 @@ class Arrangement {
 
   /// Primitives that move with their node, with triangles that no other instance shares.
   void placeRigid(const Instance& instance) {
-    SidedRanges own(prepared_.materials);
+    SidedRanges own(prepared_, tangents_);
     bool any = false;
     for (const Primitive& primitive : primitivesOf(instance)) {
       if (plan_.of(instance, primitive) != Motion::Rigid) continue;
@@ -214,7 +241,7 @@ class Arrangement {
   /// Primitives whose vertices move: skinned ones end up in the world, the others follow their node.
   void placeDeforming(const Instance& instance, bool skinned) {
     for (size_t side = 0; side < 2; ++side) {
-      GeometryRange range(prepared_.materials, true);
+      GeometryRange range(prepared_, true);
       std::vector<const Primitive*> primitives;
       Bounds bounds;
       for (const Primitive& primitive : primitivesOf(instance)) {
@@ -222,7 +249,8 @@ class Arrangement {
         const bool hasSkin = instance.skin >= 0 && primitive.influencesPerVertex > 0;
         if (plan_.of(instance, primitive) != Motion::Deforms || hasSkin != skinned || merged_.side(material) != side)
           continue;
-        range.add(plan_.undeformed(instance, primitive), material, glm::dmat4(1.0));
+        const Primitive stored = plan_.undeformed(instance, primitive);
+        range.add(stored, material, glm::dmat4(1.0), tangentsOf(prepared_, stored));
         primitives.push_back(&primitive);
         glm::dmat4 toWorld;
         for (const glm::vec3& p : plan_.restShape(instance, primitive, toWorld).positions)
@@ -243,6 +271,8 @@ class Arrangement {
   const Scene& scene_;
   MotionPlan plan_;
   PreparedScene& prepared_;
+  std::vector<size_t> uses_;  // by mesh
+  MissingTangents tangents_;
   SidedRanges merged_;
   std::vector<char> shared_;  // by mesh
   std::map<int, std::array<uint32_t, 2>> rangesOf_;
@@ -253,9 +283,9 @@ class Arrangement {
 
 PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits, const Clip* clip) {
   PreparedScene prepared;
-  for (const Material& material : scene.materials)
-    prepared.materials.push_back(packMaterial(scene, material, prepared));
-  prepared.materials.push_back(packMaterial(scene, Material{}, prepared));
+  prepareMaterials(scene, prepared);
+  for (const Mesh& mesh : scene.meshes)
+    for (const Primitive& primitive : mesh.primitives) prepared.traits.vertexColors |= !primitive.colors.empty();
   Arrangement(scene, clip, limits, prepared).run();
   gatherLights(scene, prepared, clip);
   return prepared;

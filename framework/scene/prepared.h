@@ -3,6 +3,7 @@
 #pragma once
 
 #include <weir/scene/lights.h>
+#include <weir/scene/mipmaps.h>
 #include <weir/scene/scene.h>
 #include <weir/scene/traits.h>
 
@@ -21,6 +22,12 @@ struct PackedVertex {
 };
 static_assert(sizeof(PackedVertex) == 16);
 
+/// COLOR_0 in 4 × unorm16: exact for the integers that glTF allows. 8 bytes.
+struct PackedColor {
+  uint32_t rg = 0xffffffffu, ba = 0xffffffffu;
+};
+static_assert(sizeof(PackedColor) == 8);
+
 /// Indices into positions and vertices, and the material. 16 bytes.
 struct PackedTriangle {
   uint32_t v[3] = {0, 0, 0};
@@ -33,24 +40,41 @@ inline constexpr uint32_t kMaterialMask = 1u << 0;
 inline constexpr uint32_t kMaterialBlend = 1u << 1;
 inline constexpr uint32_t kMaterialDoubleSided = 1u << 2;
 inline constexpr uint32_t kMaterialEmissive = 1u << 3;
+inline constexpr uint32_t kMaterialSpecularGlossiness = 1u << 4;
+inline constexpr uint32_t kMaterialUnlit = 1u << 5;
 
 /// 64 bytes. Texture fields are indices into PreparedScene::textures, -1: none.
 struct PackedMaterial {
   glm::vec4 baseColor{1.0f};
   glm::vec3 emission{0.0f};  ///< nit
   float alphaCutoff = 0.5f;
-  float metallic = 1.0f, roughness = 1.0f, normalScale = 1.0f;
+  float metallic = 1.0f, roughness = 1.0f, normalScale = 1.0f;  ///< `roughness` of specular-glossiness: its glossiness
   uint32_t flags = 0;
   int32_t baseColorTexture = -1, metallicRoughnessTexture = -1, normalTexture = -1, emissiveTexture = -1;
 };
 static_assert(sizeof(PackedMaterial) == 64);
 
+/// What a material's specular reflection is made of besides PackedMaterial, 32 bytes.
+/// Metallic-roughness: the dielectric's F0 = min(f0 · colour texture's rgb, 1) · weight · weight texture's alpha.
+/// Specular-glossiness: F0 = f0 · colour texture's rgb; its alpha scales the glossiness.
+struct PackedSpecular {
+  glm::vec3 f0{0.04f};
+  float weight = 1.0f;  ///< also F90 of the dielectric
+  int32_t colorTexture = -1, weightTexture = -1;
+  uint32_t pad[2] = {0, 0};
+};
+static_assert(sizeof(PackedSpecular) == 32);
+
 /// An image as one slot uses it: the same image in a colour and in a data slot becomes two.
 struct PreparedTexture {
   int image = -1;  ///< into Scene::images
-  bool srgb = false;
+  MipContent content;
   Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
   Filter magFilter = Filter::Linear, minFilter = Filter::Linear;
+  MipFilter mipFilter = MipFilter::None;
+  uint32_t uvSet = 0;
+  UvTransform transform;
+  bool operator==(const PreparedTexture&) const = default;
 };
 
 /// Triangles that share a bottom-level acceleration structure: opaque ones first, then those with an alpha test.
@@ -97,17 +121,26 @@ struct MovingLight {
 struct PreparedScene {
   std::vector<glm::vec3> positions;
   std::vector<PackedVertex> vertices;  ///< beside positions
+  std::vector<PackedColor> colors;     ///< likewise; empty without the trait vertexColors
+  std::vector<glm::vec2> uvs1;         ///< likewise, the second set; empty without the trait uvSets
   std::vector<PackedTriangle> triangles;
   std::vector<TriangleRange> ranges;        ///< [0] and [1] may be empty
   std::vector<PreparedInstance> instances;  ///< never empty when there are triangles
   std::vector<PackedMaterial> materials;    ///< the last one is glTF's default material
+  std::vector<PackedSpecular> speculars;    ///< beside materials; empty unless a specular trait holds
   std::vector<PreparedTexture> textures;
   std::vector<GpuLight> lights;       ///< those that can emit at all, triangles first
   std::vector<AliasCell> aliasTable;  ///< empty when there are no lights
   uint32_t triangleLights = 0;        ///< how many of `lights` are triangles
+  EnvironmentTable environment;       ///< of Scene::environment, which is the last of `lights`
   SceneTraits traits;
   Bounds bounds;                  ///< at rest
   uint64_t droppedTriangles = 0;  ///< degenerate or not finite
+
+  /// Where vertex v reads a texture: its set of coordinates, transformed.
+  glm::vec2 textureUv(const PreparedTexture& texture, uint32_t v) const {
+    return texture.transform(texture.uvSet == 1 ? uvs1[v] : glm::vec2(vertices[v].u, vertices[v].v));
+  }
 
   // What a clip moves (scene/scene_state.h); empty in a still scene.
   std::vector<Deformation> deformations;
@@ -131,8 +164,9 @@ struct PreparedScene {
 /// light. Static meshes are merged into world space (winding mended under mirroring transforms) except those that are
 /// shared so often that merging would multiply memory; emissive ones are always merged, so that a light's triangle is
 /// unique. Power of a triangle: π · area · luminance of its mean emission (twice that when double-sided); of a point 4π
-/// · luminance of its intensity; a spot by its cone; a directional by the area of the scene's disc. A mesh is not
-/// merged when `uses >= mergeUses` and `uses * triangles > mergeTriangles`.
+/// · luminance of its intensity; a spot by its cone; a directional by the area of the scene's disc; an environment as
+/// the directionals that it is made of. A mesh is not merged when `uses >= mergeUses` and `uses * triangles >
+/// mergeTriangles`.
 struct PrepareLimits {
   uint64_t mergeTriangles = 2'000'000;
   uint32_t mergeUses = 4;
@@ -145,7 +179,8 @@ PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits = {},
 struct SceneSummary {
   uint64_t storedTriangles = 0, instancedTriangles = 0, vertices = 0;
   uint32_t meshes = 0, primitives = 0, instances = 0, materials = 0, maskedMaterials = 0, blendMaterials = 0,
-           textures = 0, images = 0, cameras = 0, animations = 0;
+           glossyMaterials = 0, unlitMaterials = 0, coloredPrimitives = 0, uvTransforms = 0, textures = 0, images = 0,
+           cameras = 0, animations = 0;
   uint32_t pointLights = 0, spotLights = 0, directionalLights = 0;
   uint64_t emissiveTriangles = 0;  ///< of materials with a non-zero emissive factor
   Bounds bounds;

@@ -117,6 +117,7 @@ SceneSummary summarize(const Scene& scene) {
       const uint64_t count = primitive.indices.size() / 3;
       triangles += count;
       s.vertices += primitive.positions.size();
+      s.coloredPrimitives += !primitive.colors.empty();
       if (primitive.material >= 0 && scene.materials[primitive.material].isEmissive()) s.emissiveTriangles += count;
     }
     s.primitives += static_cast<uint32_t>(mesh.primitives.size());
@@ -127,6 +128,9 @@ SceneSummary summarize(const Scene& scene) {
   for (const Material& material : scene.materials) {
     s.maskedMaterials += material.alphaMode == AlphaMode::Mask;
     s.blendMaterials += material.alphaMode == AlphaMode::Blend;
+    s.glossyMaterials += material.model == MaterialModel::SpecularGlossiness;
+    s.unlitMaterials += material.model == MaterialModel::Unlit;
+    for (const TextureSlot* slot : material.slots()) s.uvTransforms += *slot && !slot->transform.isIdentity();
   }
   for (const PunctualLight& light : scene.lights) {
     s.pointLights += light.kind == LightKind::Point;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <weir/scene/animation.h>
+#include <weir/scene/environment.h>
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
@@ -21,45 +23,83 @@ struct Image {
 
 enum class Wrap : uint8_t { Repeat, MirroredRepeat, ClampToEdge };
 enum class Filter : uint8_t { Nearest, Linear };
+/// What lies between the levels of a texture; None: only level 0 is read.
+enum class MipFilter : uint8_t { None, Nearest, Linear };
 
 /// An image with its sampler. Whether its colour is sRGB-encoded follows from the slot that uses it.
 struct Texture {
   int image = -1;
   Wrap wrapS = Wrap::Repeat, wrapT = Wrap::Repeat;
   Filter magFilter = Filter::Linear, minFilter = Filter::Linear;
+  MipFilter mipFilter = MipFilter::None;
+};
+
+/// What is done to texture coordinates before a lookup: linear · uv + offset (KHR_texture_transform multiplied out).
+struct UvTransform {
+  glm::mat2 linear{1.0f};
+  glm::vec2 offset{0.0f};
+  bool isIdentity() const { return linear == glm::mat2(1.0f) && offset == glm::vec2(0.0f); }
+  glm::vec2 operator()(const glm::vec2& uv) const { return linear * uv + offset; }
+  bool operator==(const UvTransform&) const = default;
 };
 
 /// A material's use of a texture; index -1: none.
 struct TextureSlot {
   int texture = -1;
-  int uvSet = 0;
+  int uvSet = 0;  ///< 0: Primitive::uv0, 1: uv1
+  UvTransform transform;
   explicit operator bool() const { return texture >= 0; }
 };
 
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend };
 
-/// glTF 2.0 metallic-roughness. Names and meanings are the specification's.
+enum class MaterialModel : uint8_t {
+  MetallicRoughness,   ///< glTF 2.0 itself, with KHR_materials_ior and KHR_materials_specular
+  SpecularGlossiness,  ///< KHR_materials_pbrSpecularGlossiness
+  Unlit,               ///< KHR_materials_unlit: shows its base colour, neither scatters nor emits
+};
+
+/// Names and meanings are those of glTF 2.0 and of the extensions.
 struct Material {
   std::string name;
-  glm::vec4 baseColor{1.0f};
+  MaterialModel model = MaterialModel::MetallicRoughness;
+  glm::vec4 baseColor{1.0f};  ///< the diffuse factor of specular-glossiness
   float metallic = 1.0f;
-  float roughness = 1.0f;
+  float roughness = 1.0f;  ///< of metallic-roughness only
+  float glossiness = 1.0f;
+  float ior = 1.5f;
+  float specular = 1.0f;             ///< KHR_materials_specular's specularFactor
+  glm::vec3 specularColor{1.0f};     ///< specularColorFactor, or the specular factor (F0) of specular-glossiness
+  TextureSlot specularTexture;       ///< its alpha scales `specular`
+  TextureSlot specularColorTexture;  ///< scales specularColor; of specular-glossiness its alpha scales the glossiness
   /// emissiveFactor times KHR_materials_emissive_strength; radiance in nit, linear Rec.709.
   glm::vec3 emission{0.0f};
   float normalScale = 1.0f;
   TextureSlot baseColorTexture, metallicRoughnessTexture, normalTexture, emissiveTexture;
+  /// Every slot, for what is done to all of them alike.
+  std::array<TextureSlot*, 6> slots() {
+    return {&baseColorTexture, &metallicRoughnessTexture, &normalTexture,
+            &emissiveTexture,  &specularTexture,          &specularColorTexture};
+  }
+  std::array<const TextureSlot*, 6> slots() const {
+    return {&baseColorTexture, &metallicRoughnessTexture, &normalTexture,
+            &emissiveTexture,  &specularTexture,          &specularColorTexture};
+  }
   AlphaMode alphaMode = AlphaMode::Opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
-  bool isEmissive() const { return emission.x > 0 || emission.y > 0 || emission.z > 0; }
+  bool isEmissive() const {
+    return model != MaterialModel::Unlit && (emission.x > 0 || emission.y > 0 || emission.z > 0);
+  }
 };
 
 /// Triangles of one material. Arrays of attributes that the file lacks are empty.
 struct Primitive {
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;   ///< unit length
-  std::vector<glm::vec4> tangents;  ///< xyz unit length, w = ±1
-  std::vector<glm::vec2> uv0;
+  std::vector<glm::vec3> normals;     ///< unit length
+  std::vector<glm::vec4> tangents;    ///< xyz unit length, w = ±1
+  std::vector<glm::vec2> uv0, uv1;    ///< uv1 only where a slot of the material reads it
+  std::vector<glm::vec4> colors;      ///< COLOR_0, linear, 0 to 1; scales the base colour and its alpha
   std::vector<uint32_t> indices;      ///< three a triangle, each below positions.size()
   int material = -1;                  ///< -1: glTF's default material
   uint32_t influencesPerVertex = 0;   ///< a multiple of four; 0: no skin can deform it
@@ -120,6 +160,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<PunctualLight> lights;
+  Environment environment;  ///< not the file's: `--environment`
   std::vector<Camera> cameras;
   std::vector<std::string> warnings;  ///< what the importer left out or mended, once each
   std::vector<Node> nodes;            ///< all of the file's, whether or not its scene shows them

@@ -8,6 +8,15 @@ std::string traitDefines(const SceneTraits& traits) {
     if (holds) lines += std::string("#define SCENE_") + name + " 1\n";
   };
   define(traits.texturedLights, "TEXTURED_LIGHTS");
+  define(traits.vertexColors, "VERTEX_COLORS");
+  define(traits.uvSets, "UV_SETS");
+  define(traits.uvTransforms, "UV_TRANSFORMS");
+  define(traits.mipmaps, "MIPMAPS");
+  define(traits.specularGlossiness, "SPECULAR_GLOSSINESS");
+  define(traits.dielectricSpecular, "DIELECTRIC_SPECULAR");
+  define(traits.unlit, "UNLIT");
+  define(traits.f90, "F90");
+  define(traits.environment, "ENVIRONMENT");
   define(traits.animated, "ANIMATED");
   define(traits.deforms, "DEFORMS");
   return lines;

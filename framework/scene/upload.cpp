@@ -1,10 +1,9 @@
 #include <weir/scene/upload.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <map>
 #include <span>
-#include <tuple>
 
 namespace weir::scene {
 namespace {
@@ -12,19 +11,6 @@ namespace {
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr uint32_t kMostSets = 64;  // executors over one scene at a time
 
-VkSamplerAddressMode addressMode(Wrap wrap) {
-  switch (wrap) {
-    case Wrap::MirroredRepeat:
-      return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
-    case Wrap::ClampToEdge:
-      return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    default:
-      return VK_SAMPLER_ADDRESS_MODE_REPEAT;
-  }
-}
-
-VkFilter filter(Filter f) {
-  return f == Filter::Nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
 }
 
 float longestSide(const PreparedScene& prepared) {
@@ -86,8 +72,14 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   materials_ = gpu::uploadBuffer(device, prepared.materials, kStorage, "scene materials");
   lights_ = gpu::uploadBuffer(device, prepared.lights, kStorage, "scene lights");
   alias_ = gpu::uploadBuffer(device, prepared.aliasTable, kStorage, "scene alias table");
+  colors_ = gpu::uploadBuffer(device, prepared.colors, kStorage, "scene vertex colours");
+  uvs1_ = gpu::uploadBuffer(device, prepared.uvs1, kStorage, "scene texture coordinates 1");
+  speculars_ = gpu::uploadBuffer(device, prepared.speculars, kStorage, "scene specular materials");
   uploadTextures(scene, prepared);
+  if (prepared.traits.environment) environment_ = EnvironmentGpu(device, scene.environment, prepared.environment);
+  const auto start = std::chrono::steady_clock::now();
   if (withAcceleration) acceleration_ = trace::Acceleration(device, prepared, positions_);
+  accelerationSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   traits = prepared.traits;
   makeLayout();
 
@@ -102,51 +94,19 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
 }
 
 SceneGpu::~SceneGpu() {
-  for (VkSampler sampler : samplers_) vkDestroySampler(device_->handle(), sampler, nullptr);
+  for (const auto& [texture, sampler] : samplers_) vkDestroySampler(device_->handle(), sampler, nullptr);
   vkDestroyDescriptorPool(device_->handle(), pool_, nullptr);
   vkDestroyDescriptorSetLayout(device_->handle(), layout_, nullptr);
 }
 
 uint64_t SceneGpu::bytes() const {
-  uint64_t sum = acceleration_.bytes();
-  for (const gpu::Buffer* b : {&positions_, &vertices_, &triangles_, &instances_, &materials_, &lights_, &alias_}) {
+  uint64_t sum = acceleration_.bytes() + environment_.bytes();
+  for (const gpu::Buffer* b : {&positions_, &vertices_, &triangles_, &instances_, &materials_, &lights_, &alias_,
+                               &colors_, &uvs1_, &speculars_, &textureUses_}) {
     sum += b->size();
   }
   for (const gpu::Image& image : images_) sum += image.bytes();
   return sum;
-}
-
-void SceneGpu::uploadTextures(const Scene& scene, const PreparedScene& prepared) {
-  std::map<std::pair<int, bool>, uint32_t> imageIndex;
-  std::map<std::tuple<Wrap, Wrap, Filter, Filter>, VkSampler> samplerOf;
-  const Image white{"white", 1, 1, {255, 255, 255, 255}};
-  auto add = [&](const PreparedTexture& t) {
-    const auto [entry, fresh] = imageIndex.try_emplace({t.image, t.srgb}, static_cast<uint32_t>(images_.size()));
-    if (fresh) {
-      const Image& source = t.image < 0 ? white : scene.images[t.image];
-      gpu::ImageDesc desc;
-      desc.width = source.width;
-      desc.height = source.height;
-      desc.format = t.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
-      images_.push_back(
-          gpu::uploadImage(*device_, desc, std::as_bytes(std::span(source.rgba)), "texture " + source.name));
-    }
-    VkSampler& sampler = samplerOf[{t.wrapS, t.wrapT, t.magFilter, t.minFilter}];
-    if (sampler == VK_NULL_HANDLE) {
-      VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-      info.magFilter = filter(t.magFilter);
-      info.minFilter = filter(t.minFilter);
-      info.addressModeU = addressMode(t.wrapS);
-      info.addressModeV = addressMode(t.wrapT);
-      info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-      info.maxLod = VK_LOD_CLAMP_NONE;
-      gpu::check(vkCreateSampler(device_->handle(), &info, nullptr, &sampler), "vkCreateSampler");
-      samplers_.push_back(sampler);
-    }
-    textures_.push_back({entry->second, sampler});
-  };
-  for (const PreparedTexture& t : prepared.textures) add(t);
-  if (textures_.empty()) add(PreparedTexture{});  // so that the array is never empty
 }
 
 void SceneGpu::makeLayout() {
@@ -157,6 +117,10 @@ void SceneGpu::makeLayout() {
   bind(kBindFrame, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1);
   for (uint32_t b = kBindPositions; b <= kBindRays; ++b) bind(b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1);
   if (withAcceleration_) bind(kBindAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1);
+  if (environment_) {
+    bind(kBindEnvironment, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1);
+    bind(kBindEnvironmentMap, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1);
+  }
   if (traits.animated) {
     for (uint32_t b = kBindPreviousPositions; b <= kBindPreviousLights; ++b)
       bind(b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1);
@@ -170,8 +134,8 @@ void SceneGpu::makeLayout() {
 
   std::vector<VkDescriptorPoolSize> sizes = {
       {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, kMostSets},
-      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostSets * (kBindRays - kBindPositions + 4)},
-      {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kMostSets * textureCount()}};
+      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostSets * (kBindRays - kBindPositions + 5)},
+      {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kMostSets * (textureCount() + 1)}};
   if (withAcceleration_) sizes.push_back({VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 2 * kMostSets});
   VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   pool.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
@@ -191,27 +155,26 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
   gpu::check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set), "vkAllocateDescriptorSets");
 
   const VkDescriptorBufferInfo frame{frameConstants.handle(), 0, slotBytes};
-  std::array<VkBuffer, 11> handles = {positions_.handle(), vertices_.handle(),  triangles_.handle(),
-                                      instances_.handle(), materials_.handle(), lights_.handle(),
-                                      alias_.handle(),     rayCounter.handle()};
+  constexpr uint32_t kOwn = kBindRays - kBindPositions + 1;
+  std::array<VkBuffer, kOwn + 3> handles = {positions_.handle(), vertices_.handle(),    triangles_.handle(),
+                                            instances_.handle(), materials_.handle(),   lights_.handle(),
+                                            alias_.handle(),     colors_.handle(),      uvs1_.handle(),
+                                            speculars_.handle(), textureUses_.handle(), rayCounter.handle()};
   VkAccelerationStructureKHR top = acceleration_.top();
-  uint32_t count = kBindRays - kBindPositions + 1;
+  uint32_t count = kOwn;
   if (moving != nullptr) {
-    handles = {moving->positions,
-               moving->vertices,
-               triangles_.handle(),
-               moving->instances,
-               materials_.handle(),
-               moving->lights,
-               moving->alias,
-               rayCounter.handle(),
-               moving->previousPositions,
-               moving->previousInstances,
-               moving->previousLights};
+    handles[0] = moving->positions;
+    handles[1] = moving->vertices;
+    handles[3] = moving->instances;
+    handles[5] = moving->lights;
+    handles[6] = moving->alias;
+    handles[kOwn] = moving->previousPositions;
+    handles[kOwn + 1] = moving->previousInstances;
+    handles[kOwn + 2] = moving->previousLights;
     top = moving->top;
-    count = static_cast<uint32_t>(handles.size());
+    count = kOwn + 3;
   }
-  std::array<VkDescriptorBufferInfo, 11> buffers{};
+  std::array<VkDescriptorBufferInfo, handles.size()> buffers{};
   std::vector<VkWriteDescriptorSet> writes;
   auto write = [&](uint32_t binding, VkDescriptorType type, uint32_t count) -> VkWriteDescriptorSet& {
     VkWriteDescriptorSet w{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
@@ -225,9 +188,7 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
   write(kBindFrame, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1).pBufferInfo = &frame;
   for (uint32_t i = 0; i < count; ++i) {
     buffers[i] = {handles[i], 0, VK_WHOLE_SIZE};
-    const uint32_t binding = i <= kBindRays - kBindPositions
-                                 ? kBindPositions + i
-                                 : kBindPreviousPositions + i - (kBindRays - kBindPositions + 1);
+    const uint32_t binding = i < kOwn ? kBindPositions + i : kBindPreviousPositions + i - kOwn;
     write(binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1).pBufferInfo = &buffers[i];
   }
   VkWriteDescriptorSetAccelerationStructureKHR acceleration{
@@ -240,6 +201,12 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
     write(kBindPreviousAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1).pNext = &previous;
   if (withAcceleration_)
     write(kBindAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1).pNext = &acceleration;
+  const VkDescriptorBufferInfo environmentTable{environment_.table(), 0, VK_WHOLE_SIZE};
+  const VkDescriptorImageInfo environmentMap = environment_.map();
+  if (environment_) {
+    write(kBindEnvironment, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1).pBufferInfo = &environmentTable;
+    write(kBindEnvironmentMap, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1).pImageInfo = &environmentMap;
+  }
   std::vector<VkDescriptorImageInfo> images;
   for (const Texture& t : textures_) {
     images.push_back({t.sampler, images_[t.image].view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});

@@ -4,6 +4,7 @@
 
 #include <weir/gpu/memory.h>
 #include <weir/scene/prepared.h>
+#include <weir/scene/upload_environment.h>
 #include <weir/trace/acceleration.h>
 
 #include <array>
@@ -21,8 +22,14 @@ enum SceneBinding : uint32_t {
   kBindMaterials,
   kBindLights,
   kBindAlias,
+  kBindColors,        ///< with the trait vertexColors
+  kBindUvs1,          ///< with uvSets
+  kBindSpeculars,     ///< with one of the specular traits
+  kBindTextureUses,   ///< with uvSets, uvTransforms or mipmaps
   kBindRays,          ///< ray counter
   kBindAcceleration,  ///< only on devices with acceleration structures
+  kBindEnvironment,   ///< its table; only in scenes that have one, as the next
+  kBindEnvironmentMap,
   // As in the last frame; only where a clip moves the scene.
   kBindPreviousPositions,
   kBindPreviousInstances,
@@ -39,6 +46,15 @@ struct GpuInstance {
 };
 static_assert(sizeof(GpuInstance) == 80);
 
+/// How a texture of the array is read, 32 bytes.
+struct GpuTextureUse {
+  glm::vec4 linear{1, 0, 0, 1};  ///< columns of UvTransform::linear
+  glm::vec2 offset{0.0f};
+  uint32_t uvSet = 0;
+  /// log2 of how many texels a unit of length in untransformed coordinates is, as the mean over directions by area.
+  float texelLevel = 0.0f;
+};
+static_assert(sizeof(GpuTextureUse) == 32);
 /// What stands in set 0 where a clip moves the scene, in place of the scene's own: this frame's and the last one's.
 struct MovingBindings {
   VkBuffer positions = VK_NULL_HANDLE, vertices = VK_NULL_HANDLE, instances = VK_NULL_HANDLE, lights = VK_NULL_HANDLE,
@@ -86,24 +102,28 @@ class SceneGpu {
     uint32_t triangles;
     bool doubleSided, flipsWinding;
   };
-  std::vector<Draw> draws;  ///< per instance, for rasterisation
+  double accelerationSeconds = 0.0;  ///< what building the acceleration structures took
+  std::vector<Draw> draws;           ///< per instance, for rasterisation
 
  private:
   void uploadTextures(const Scene& scene, const PreparedScene& prepared);
+  VkSampler samplerOf(const PreparedTexture& texture);
   void makeLayout();
 
   const gpu::Device* device_;
   const Scene* scene_;
   const PreparedScene* prepared_;
   bool withAcceleration_;
-  gpu::Buffer positions_, vertices_, triangles_, instances_, materials_, lights_, alias_;
+  gpu::Buffer positions_, vertices_, triangles_, instances_, materials_, lights_, alias_, colors_, uvs1_, speculars_,
+      textureUses_;
   struct Texture {
     uint32_t image;
     VkSampler sampler;
   };
   std::vector<gpu::Image> images_;
-  std::vector<VkSampler> samplers_;
+  std::vector<std::pair<PreparedTexture, VkSampler>> samplers_;  // by a texture whose filters and wraps it has
   std::vector<Texture> textures_;
+  EnvironmentGpu environment_;
   trace::Acceleration acceleration_;
   VkDescriptorSetLayout layout_ = VK_NULL_HANDLE;
   VkDescriptorPool pool_ = VK_NULL_HANDLE;

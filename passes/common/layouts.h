@@ -16,7 +16,9 @@ struct PackedSurface {
   uint32_t shadingNormal;    ///< likewise
   uint32_t diffuse;          ///< c_diff: 11 + 11 + 10 bits, square-root spaced
   uint32_t specular;         ///< F0, likewise
-  uint32_t roughnessJitter;  ///< roughness unorm16 above, sample place in the pixel 2 × 8 bits below (127: centre)
+  /// Roughness unorm16 above, sample place in the pixel 2 × 8 bits below (127: centre). In scenes with the trait f90
+  /// the upper half is roughness unorm10 above F90 unorm6.
+  uint32_t roughnessJitter;
 };
 
 /// A reservoir of one light sample: 16 bytes. All zero is the empty reservoir: it adds nothing and has no confidence.

@@ -8,11 +8,12 @@ void describeGBuffer(PassDescription& d) {
   d.output("surface", perPixel<PackedSurface>()).doc("First visible surface; distance 0 where there is none");
   d.output("emission", storageImage(Format::RGBA32F))
       .radiance()
-      .doc("What the surface itself emits, nit; alpha 1 where there is one");
+      .doc("What the surface itself emits, nit; alpha 1 where there is one. Elsewhere the environment, alpha 0");
   d.output("motion", storageImage(Format::RG32F))
       .doc("Where the surface was in the last frame minus where it is, pixels");
   d.param("jitter", false).doc("Sample a new place in the pixel's box every frame, the same in all pixels");
-  d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::FrameCamera).needs(Need::FrameIndex);
+  d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneEnvironment);
+  d.needs(Need::FrameCamera).needs(Need::FrameIndex);
   d.needsPrevious(Need::FrameCamera).needsPrevious(Need::SceneGeometry);
 }
 

@@ -8,6 +8,9 @@ void Initial::describe(PassDescription& d) {
   d.input("surface", perPixel<PackedSurface>());
   d.output("reservoirs", perPixel<Reservoir>()).times("samples").doc("One or more reservoirs a pixel");
   d.param("candidates", 32).range(1, 1024).doc("Lights that each pixel looks at");
+  d.param("bsdfCandidates", 1)
+      .range(0, 64)
+      .doc("In scenes with an environment: directions by the BSDF that each pixel looks at, too, for what is glossy");
   d.param("samples", 1).range(1, 4).doc("Reservoirs a pixel; they share the candidates");
   d.param("uniformShare", 0.1f)
       .range(0, 1)

@@ -26,10 +26,14 @@ float ggxVisibility(float nl, float nv, float alpha) {
   return 0.5 / (gv + gl);
 }
 
-vec3 schlick(vec3 f0, float vh) {
+vec3 schlick(Surface s, float vh) {
   const float m = clamp(1.0 - vh, 0.0, 1.0);
   const float m2 = m * m;
-  return f0 + (1.0 - f0) * (m2 * m2 * m);
+#ifdef SCENE_F90
+  return s.f0 + (s.f90 - s.f0) * (m2 * m2 * m);
+#else
+  return s.f0 + (1.0 - s.f0) * (m2 * m2 * m);
+#endif
 }
 
 // BSDF times cosine for light from `l` (unit). Zero below the geometric or the shading surface.
@@ -38,7 +42,7 @@ vec3 bsdfCos(Surface s, vec3 l) {
   if (nl <= 0.0 || dot(s.geometricNormal, l) <= 0.0) return vec3(0.0);
   const float nv = max(dot(s.normal, s.view), 0.0);
   const vec3 h = normalize(l + s.view);
-  const vec3 f = schlick(s.f0, dot(s.view, h));
+  const vec3 f = schlick(s, dot(s.view, h));
   const vec3 diffuse = (1.0 - f) * s.diffuse / kPi;
   const vec3 specular = f * (ggxD(s.normal, h, s.alpha) * ggxVisibility(nl, nv, s.alpha));
   return (diffuse + specular) * nl;

@@ -1,7 +1,8 @@
-// From a hit to the packed surface: interpolation, textures, normal map, glTF's material model.
+// From a hit to the packed surface: interpolation, textures, normal map, material.
 #ifndef WEIR_HIT_SURFACE
 #define WEIR_HIT_SURFACE
 
+#include "material.glsl"
 #include "scene.glsl"
 #include "surface.glsl"
 #include "trace_types.glsl"
@@ -44,7 +45,11 @@ HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter) {
   const Vertex v0 = sceneVertices[t.x], v1 = sceneVertices[t.y], v2 = sceneVertices[t.z];
   vec3 n = cofactor * (b.x * unpackNormal(v0.normal) + b.y * unpackNormal(v1.normal) + b.z * unpackNormal(v2.normal));
   n = dot(n, n) > 0.0 ? normalize(n) : geometric;
-  const vec2 uv = b.x * v0.uv + b.y * v1.uv + b.z * v2.uv;
+#ifdef SCENE_MIPMAPS
+  const Lookup at = lookupAt(t, Corners(p0, p1, p2), hit, origin, direction);
+#else
+  const Lookup at = Lookup(coordinatesAt(t, hit.barycentrics));
+#endif
   if (m.normalTexture >= 0) {
     const vec4 t0 = unpackTangent(v0.tangent), t1 = unpackTangent(v1.tangent), t2 = unpackTangent(v2.tangent);
     vec3 tangent = linear * (b.x * t0.xyz + b.y * t1.xyz + b.z * t2.xyz);
@@ -52,34 +57,35 @@ HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter) {
     if (dot(tangent, tangent) > 0.0) {
       tangent = normalize(tangent);
       const vec3 bitangent = cross(n, tangent) * (t0.w * mirror);
-      vec3 mapped = sampleTexture(m.normalTexture, uv).xyz * 2.0 - 1.0;
+      vec3 mapped = look(m.normalTexture, at).xyz * 2.0 - 1.0;
       mapped.xy *= m.normalScale;
       const vec3 bent = tangent * mapped.x + bitangent * mapped.y + n * mapped.z;
       if (dot(bent, bent) > 0.0) n = normalize(bent);
     }
   }
 
-  vec4 base = m.baseColor;
-  if (m.baseColorTexture >= 0) base *= sampleTexture(m.baseColorTexture, uv);
-  float metallic = m.metallic, roughness = m.roughness;
-  if (m.metallicRoughnessTexture >= 0) {
-    const vec4 mr = sampleTexture(m.metallicRoughnessTexture, uv);
-    roughness *= mr.g;
-    metallic *= mr.b;
-  }
+  vec3 base = m.baseColor.rgb;
+#ifdef SCENE_VERTEX_COLORS
+  base *= colorAt(t, hit.barycentrics).rgb;
+#endif
+  if (m.baseColorTexture >= 0) base *= look(m.baseColorTexture, at).rgb;
+  const Reflection reflection = reflectionOf(t.w, base, at);
   r.emission = vec3(0.0);
   if ((m.flags & kMaterialEmissive) != 0u && (front || (m.flags & kMaterialDoubleSided) != 0u)) {
     r.emission = m.emission;
-    if (m.emissiveTexture >= 0) r.emission *= sampleTexture(m.emissiveTexture, uv).rgb;
+    if (m.emissiveTexture >= 0) r.emission *= look(m.emissiveTexture, at).rgb;
   }
+#ifdef SCENE_UNLIT
+  if ((m.flags & kMaterialUnlit) != 0u) r.emission = base;
+#endif
 
   const vec3 view = -direction;
   r.surface.distance = length(r.position - origin);
   r.surface.geometricNormal = packNormal(geometric * side);
   r.surface.shadingNormal = packNormal(facingNormal(n * side, view));
-  r.surface.diffuse = packAlbedo(base.rgb * (1.0 - metallic));
-  r.surface.specular = packAlbedo(mix(vec3(0.04), base.rgb, metallic));
-  r.surface.roughnessJitter = jitter.x | (jitter.y << 8u) | (uint(clamp(roughness, 0.0, 1.0) * 65535.0 + 0.5) << 16u);
+  r.surface.diffuse = packAlbedo(reflection.diffuse);
+  r.surface.specular = packAlbedo(reflection.f0);
+  r.surface.roughnessJitter = jitter.x | (jitter.y << 8u) | (packRoughness(reflection.roughness, reflection.f90) << 16u);
   return r;
 }
 

@@ -3,35 +3,39 @@
 #ifndef WEIR_LIGHTS
 #define WEIR_LIGHTS
 
+#include "random_bits.glsl"
 #include "scene.glsl"
 #include "surface.glsl"
+#ifdef SCENE_ENVIRONMENT
+#include "environment.glsl"
+#endif
 
-const uint kPoint = 0u, kSpot = 1u, kDirectional = 2u, kTriangle = 3u;
+const uint kPoint = 0u, kSpot = 1u, kDirectional = 2u, kTriangle = 3u, kEnvironment = 4u;
 const uint kKindMask = 0xffu, kLightDoubleSided = 1u << 8, kLightTextured = 1u << 9, kLightTurned = 1u << 10;
 
 // A point on a light as seen from a surface.
 struct LightSample {
   vec3 direction;  // unit, towards the light
-  vec3 radiance;   // what arrives, times the geometry term: per area for triangles, per light for the rest
-  vec3 target;     // the point; for directional lights one far beyond the scene
-  float area;      // m², 1 for punctual lights: the sample's density is pdf of the light / area
+  vec3 radiance;   // what arrives, times the geometry term: per area for triangles, per steradian for the environment, per light
+                   // for the rest
+  vec3 target;     // the point; for directional lights and the environment one far beyond the scene
+  float area;      // m², 1 for punctual lights: the sample's density is pdf of the light / area. 1 for the environment, whose
+                   // density its table says
 };
 
 uint lightCount() { return uint(sceneLightCount); }
 
-// Picks a light by power. `u` uniform in [0,1), its remainder decides within the cell.
-uint pickLight(float u, float v) {
-  const uint n = lightCount();
-  const uint cell = min(uint(u * float(n)), n - 1u);
+// Picks a light by power from a uniform number each for the cell and within it.
+uint pickLight(uint bits, float v) {
+  const uint cell = scaleBits(bits, lightCount());
   return v < sceneAlias[cell].threshold ? cell : sceneAlias[cell].alias;
 }
 
 // Picks a light by power with probability 1 - `uniformShare`, else any: a dim light close by is found in time, and no light's
 // density is less than uniformShare / n. mixedPdf() is the probability of what came out.
-uint pickMixed(float u, float v, float uniformShare) {
-  const uint n = lightCount();
-  if (u < uniformShare) return min(uint(u / uniformShare * float(n)), n - 1u);
-  return pickLight((u - uniformShare) / (1.0 - uniformShare), v);
+uint pickMixed(uvec2 bits, float uniformShare) {
+  const float u = unitFromBits(bits.y), byPower = 1.0 - uniformShare;
+  return u < byPower ? pickLight(bits.x, u / byPower) : scaleBits(bits.x, lightCount());
 }
 float mixedPdf(Light light, float uniformShare) { return mix(light.pdf, 1.0 / float(lightCount()), uniformShare); }
 
@@ -104,8 +108,23 @@ LightSample evaluatePunctual(Light light, vec3 position) {
   return s;
 }
 
+#ifdef SCENE_ENVIRONMENT
+LightSample environmentSample(vec3 direction, vec3 radiance, vec3 position) {
+  return LightSample(direction, radiance, position + direction * sceneDiameter, 1.0);
+}
+
+// The same place is the same direction from everywhere.
+LightSample evaluateEnvironment(uint place, vec3 position) {
+  const EnvironmentPoint p = environmentPoint(place);
+  return environmentSample(p.direction, environmentAt(p.uv), position);
+}
+#endif
+
 LightSample evaluateLight(Light light, uint place, vec3 position) {
   if ((light.kind & kKindMask) == kTriangle) return evaluateTriangle(light, placeOnTriangle(place), position);
+#ifdef SCENE_ENVIRONMENT
+  if ((light.kind & kKindMask) == kEnvironment) return evaluateEnvironment(place, position);
+#endif
   return evaluatePunctual(light, position);
 }
 

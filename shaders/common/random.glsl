@@ -31,8 +31,9 @@ Random randomFor(uvec2 pixel, uint substream) {
 }
 
 // Four independent uniform numbers; each call takes the next dimension.
+uvec4 nextBits4(inout Random r) { return pcg4d(uvec4(r.key.x, r.key.y, r.key.z, r.dimension++)); }
 vec4 next4(inout Random r) {
-  const uvec4 bits = pcg4d(uvec4(r.key.x, r.key.y, r.key.z, r.dimension++));
+  const uvec4 bits = nextBits4(r);
   return vec4(uniformFloat(bits.x), uniformFloat(bits.y), uniformFloat(bits.z), uniformFloat(bits.w));
 }
 vec2 next2(inout Random r) { return next4(r).xy; }

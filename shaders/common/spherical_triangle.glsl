@@ -12,12 +12,12 @@ const float kNearRatio = 1.0 / 8.0;
 struct SphericalTriangle {
   vec3 a, b, c;        // unit, towards the corners
   float g0, g1, g2;    // tan(Ω / 2) = g0 / (g1 + g2)
-  float solidAngle;    // steradians; 0 where the point lies in the triangle's plane
+  float solidAngle;    // steradians; 0 where the point lies in the triangle's plane, as far as its error can tell
   bool near;           // to be sampled by solid angle
 };
 
-// From the vector to the first corner and the two edges from there.
-SphericalTriangle sphericalTriangle(vec3 toCorner, vec3 edge1, vec3 edge2) {
+// From the vector to the first corner and the two edges from there; `error` is that of the vector, metres.
+SphericalTriangle sphericalTriangle(vec3 toCorner, vec3 edge1, vec3 edge2, float error) {
   SphericalTriangle t;
   const vec3 corner1 = toCorner + edge1, corner2 = toCorner + edge2, edge3 = edge2 - edge1;
   const float d0 = length(toCorner), d1 = length(corner1), d2 = length(corner2);
@@ -28,7 +28,9 @@ SphericalTriangle sphericalTriangle(vec3 toCorner, vec3 edge1, vec3 edge2) {
   t.b = corner1 / d1;
   t.c = corner2 / d2;
   // The volume by the height over the plane, 1 + a·b by the chord a + b: neither cancels in a sliver.
-  t.g0 = abs(dot(toCorner, cross(edge1, edge2))) / (d0 * d1 * d2);
+  const vec3 normal = cross(edge1, edge2);
+  const float height = abs(dot(toCorner, normal));
+  t.g0 = height > error * length(normal) ? height / (d0 * d1 * d2) : 0.0;
   const vec3 chord = t.a + t.b;
   t.g1 = dot(chord, t.c);
   t.g2 = 0.5 * dot(chord, chord);

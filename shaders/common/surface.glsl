@@ -13,6 +13,9 @@ struct Surface {
   vec3 view;             // unit, towards the camera
   vec3 diffuse;          // c_diff of glTF 2.0 appendix B
   vec3 f0;
+#ifdef SCENE_F90
+  float f90;  // reflectance at grazing angles; 1 where scenes lack the trait
+#endif
   float alpha;  // GGX α = roughness²
   float distance;
   float error;  // bound on the error of `position` by floating point, metres
@@ -32,6 +35,15 @@ float positionError(vec3 position, vec3 origin, float distance) {
   return (max(largest.x, max(largest.y, largest.z)) + distance) * (8.0 / 8388608.0);
 }
 
+// Roughness in 16 bits; where surfaces differ in F90, roughness in 10 and that in 6.
+uint packRoughness(float roughness, float f90) {
+#ifdef SCENE_F90
+  return (uint(clamp(roughness, 0.0, 1.0) * 1023.0 + 0.5) << 6u) | uint(clamp(f90, 0.0, 1.0) * 63.0 + 0.5);
+#else
+  return uint(clamp(roughness, 0.0, 1.0) * 65535.0 + 0.5);
+#endif
+}
+
 vec3 surfaceNormal(PackedSurface p) { return unpackNormal(p.shadingNormal); }
 
 Surface unpackSurface(PackedSurface p, uvec2 pixel, Camera camera, vec2 size) {
@@ -45,7 +57,12 @@ Surface unpackSurface(PackedSurface p, uvec2 pixel, Camera camera, vec2 size) {
   s.view = -direction;
   s.diffuse = unpackAlbedo(p.diffuse);
   s.f0 = unpackAlbedo(p.specular);
+#ifdef SCENE_F90
+  const float roughness = float(p.roughnessJitter >> 22u) / 1023.0;
+  s.f90 = float((p.roughnessJitter >> 16u) & 63u) / 63.0;
+#else
   const float roughness = float(p.roughnessJitter >> 16u) / 65535.0;
+#endif
   s.alpha = max(roughness * roughness, kSmallestAlpha);
   s.error = positionError(s.position, camera.origin.xyz, p.distance);
   return s;

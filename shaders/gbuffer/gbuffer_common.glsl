@@ -2,6 +2,9 @@
 #include "gbuffer_jitter.glsl"
 #include "hit_surface.glsl"
 #include "previous.glsl"
+#ifdef SCENE_ENVIRONMENT
+#include "environment.glsl"
+#endif
 
 const float kInfinity = 3.0e38;
 
@@ -11,7 +14,11 @@ void writePixel(uvec2 pixel, Hit hit, vec3 direction, uvec2 jitter) {
   vec3 before;  // where last frame's camera saw what this pixel shows
   if (hit.triangle == kNoTriangle) {
     out_surface[index] = noSurface();
-    imageStore(out_emission, ivec2(pixel), vec4(0.0));
+    vec3 background = vec3(0.0);
+#ifdef SCENE_ENVIRONMENT
+    background = environmentRadiance(direction);
+#endif
+    imageStore(out_emission, ivec2(pixel), vec4(background, 0.0));
     before = cameraProject(previousCamera, previousCamera.origin.xyz + direction, frameSize);
   } else {
     const HitSurface s = surfaceAt(hit, camera.origin.xyz, direction, jitter);

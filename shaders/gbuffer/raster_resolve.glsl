@@ -1,4 +1,5 @@
 // From the visibility buffer to surfaces: the point on the triangle by intersecting its plane with the pixel's ray.
+#define LEVEL_FROM_DERIVATIVES 1
 #include "gbuffer_common.glsl"
 
 // The instance that owns a drawn triangle: the last whose first one isn't above it.

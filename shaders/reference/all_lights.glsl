@@ -1,9 +1,12 @@
 // Brute-force direct light: a shadow ray to EVERY punctual light, and stratified rays to every emissive triangle. Shares with the
-// reservoirs only the BSDF, the punctual lights' formula and the rays; nothing here picks, weighs or reuses.
+// reservoirs only the BSDF, the punctual lights' formula, the environment's table and the rays; nothing here weighs or reuses.
 #include "random.glsl"
 #include "bsdf.glsl"
 #include "visibility.glsl"
 #include "spherical_triangle.glsl"
+#ifdef SCENE_ENVIRONMENT
+#include "bsdf_sample.glsl"
+#endif
 
 vec3 arriving(Surface surface, LightSample light) {
   if (light.radiance == vec3(0.0)) return vec3(0.0);
@@ -37,6 +40,44 @@ LightSample sampleByArea(Light light, vec2 u, vec3 position) {
   return evaluateTriangle(light, vec2(root * (1.0 - u.y), root * u.y), position);
 }
 
+#ifdef SCENE_ENVIRONMENT
+const int kByImportance = 0, kUniform = 1;
+
+LightSample environmentFrom(vec3 direction, vec3 position) {
+  return environmentSample(direction, environmentRadiance(direction), position);
+}
+
+// Stratum j of n² on the sphere.
+LightSample sampleUniformly(uint j, uint n, vec2 u, vec3 position) {
+  u = (vec2(j % n, j / n) + u) / float(n);
+  const float y = 1.0 - 2.0 * u.y, across = 2.0 * sqrt(u.y * (1.0 - u.y)), longitude = 2.0 * kPi * u.x;
+  LightSample s = environmentFrom(vec3(across * cos(longitude), y, across * sin(longitude)), position);
+  s.area = 4.0 * kPi;
+  return s;
+}
+
+// Stratum j of n² of the table's cells or, beyond those, a direction by the BSDF; both with the reciprocal of the sum of the two
+// densities as their area: the balance heuristic (Veach 1997).
+LightSample sampleByImportance(Surface surface, uint j, uint strata, inout Random random) {
+  LightSample s;
+  float density;
+  if (j < strata) {
+    uvec4 bits = nextBits4(random);
+    const uint width = 0xffffffffu / strata;
+    bits.x = j * width + scaleBits(bits.x, width);
+    float spread;
+    s = evaluateEnvironment(pickEnvironment(bits, spread), surface.position);
+    density = 1.0 / spread;
+  } else {
+    s = environmentFrom(sampleBsdf(surface, next4(random).xyz), surface.position);
+    density = environmentDensity(environmentPlace(s.direction));
+  }
+  density += bsdfDensity(surface, s.direction);
+  s.area = density > 0.0 ? 1.0 / density : 0.0;
+  return s;
+}
+#endif
+
 void run(uvec2 pixel) {
   const uint index = pixel.y * frameWidth + pixel.x;
   vec3 color = imageLoad(in_emission, ivec2(pixel)).rgb;
@@ -44,24 +85,42 @@ void run(uvec2 pixel) {
   if (isSurface(packed)) {
     const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
     Random random = randomFor(pixel, 0u);
-    const int n = param_samples;  // a side of the stratified square on each triangle
+    const uint n = uint(param_samples);  // a side of the stratified square on each triangle
     for (uint i = 0u; i < lightCount(); ++i) {
       const Light light = sceneLights[i];
-      if ((light.kind & kKindMask) != kTriangle) {
-        color += arriving(surface, evaluatePunctual(light, surface.position));
-        continue;
+      const uint kind = light.kind & kKindMask;
+      SphericalTriangle t;
+      uint samples = 1u, strata = 1u;
+      if (kind == kTriangle) {
+        t = sphericalTriangle(light.position - surface.position, light.a, light.b, surface.error);
+        strata = n * n;
+        samples = t.solidAngle > 0.0 ? strata : 0u;
       }
-      const SphericalTriangle t = sphericalTriangle(light.position - surface.position, light.a, light.b);
-      if (!(t.solidAngle > 0.0)) continue;
+#ifdef SCENE_ENVIRONMENT
+      if (kind == kEnvironment) {
+        strata = n * n;
+        samples = param_environment == kUniform ? strata : 2u * strata;
+      }
+#endif
+      // One place that traces rays: compilers put a copy of all that belongs to it into each.
       vec3 sum = vec3(0.0);
-      for (int j = 0; j < n * n; ++j) {
-        const vec2 u = (vec2(j % n, j / n) + next2(random)) / float(n);
+      for (uint j = 0u; j < samples; ++j) {
         LightSample s;
-        if (t.near) s = sampleBySolidAngle(light, t, u, surface.position);
-        else s = sampleByArea(light, u, surface.position);
+        if (kind == kTriangle) {
+          const vec2 u = (vec2(j % n, j / n) + next2(random)) / float(n);
+          if (t.near) s = sampleBySolidAngle(light, t, u, surface.position);
+          else s = sampleByArea(light, u, surface.position);
+#ifdef SCENE_ENVIRONMENT
+        } else if (kind == kEnvironment) {
+          if (param_environment == kUniform) s = sampleUniformly(j, n, next2(random), surface.position);
+          else s = sampleByImportance(surface, j, strata, random);
+#endif
+        } else {
+          s = evaluatePunctual(light, surface.position);
+        }
         sum += arriving(surface, s) * s.area;
       }
-      color += sum / float(n * n);
+      color += sum / float(strata);
     }
   }
   imageStore(out_color, ivec2(pixel), vec4(color, 1.0));

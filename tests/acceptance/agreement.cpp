@@ -140,6 +140,7 @@ int main(int argc, char** argv) {
   CLI::App app("Do the unbiased settings of restir_di agree with reference.AllLights?");
   app.add_option("--scene", words.stage.scene)->required();
   app.add_option("--lights", words.stage.lights);
+  app.add_option("--environment", words.stage.environment);
   app.add_option("--camera", words.stage.camera);
   app.add_option("--size", words.size);
   app.add_option("--restarts", words.restarts);

@@ -11,7 +11,8 @@ TEST(Alpha, MasksAgreeWithTheTexture) {
   t.size(96, 64).scene(scene).camera(camera);
   t.run();
   const GFrame frame = readFrame(t, 96, 64);
-  const RayOracle oracle(t.sourceScene(), t.prepared());
+  RayOracle oracle(t.sourceScene(), t.prepared());
+  oracle.seeThrough(camera, frame.width, frame.height, LevelRule::Cone);
   size_t skipped = 0, holes = 0, leaves = 0, wrong = 0;
   for (uint32_t y = 0; y < frame.height; ++y) {
     for (uint32_t x = 0; x < frame.width; ++x) {

@@ -19,11 +19,12 @@ constexpr uint32_t kSide = 64, kTile = 16;
 
 class Laboratory {
  public:
-  explicit Laboratory(const std::string& sceneFile)
+  Laboratory(const std::string& sceneFile, const std::string& environment)
       : device_(validatedDevice()),
         guard_(*device_),
         registry_({std::filesystem::path(WEIR_BINARY_DIR) / "bin"}),
-        stage_(render::makeStage({.scene = sourcePath(sceneFile)}, 1.0f)),
+        stage_(render::makeStage(
+            {.scene = sourcePath(sceneFile), .environment = environment.empty() ? "" : sourcePath(environment)}, 1.0f)),
         scene_(*device_, stage_.scene, stage_.prepared, device_->capabilities().accelerationStructure) {}
 
   /// One picture a restart: the mean of its frames.
@@ -57,8 +58,8 @@ class Laboratory {
 /// Tiles within Student's bound and the whole picture's bias within its interval. Chance of a false alarm of one
 /// scene's test: 1e-3 for the tiles of its four settings together, and as much for the four means.
 void expectUnbiased(const std::string& scene, uint32_t referenceRestarts, const std::string& referenceSamples,
-                    const std::string& candidates) {
-  Laboratory laboratory(scene);
+                    const std::string& candidates, const std::string& environment = "") {
+  Laboratory laboratory(scene, environment);
   const image::RestartAccumulator reference = laboratory.run(
       "graphs/all_lights.json", {.set = {"direct.samples=" + referenceSamples}, .enable = {}, .disable = {}},
       referenceRestarts, 1, 1000);
@@ -97,6 +98,11 @@ TEST(RestirEndToEnd, CornellBox) {
 }
 TEST(RestirEndToEnd, ThousandPoints) {
   expectUnbiased("scenes/cornell-1000-points.glb", 3, "1", "128");
+}
+
+// The lamp and the sky that comes in at the open front.
+TEST(RestirEndToEnd, CornellBoxUnderTheSky) {
+  expectUnbiased("scenes/cornell.glb", 24, "4", "8", "scenes/sky.hdr");
 }
 
 }  // namespace

@@ -8,24 +8,6 @@
 namespace weir::test {
 namespace {
 
-double srgbToLinear(double c) {
-  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
-/// Index of a texel after the sampler's wrap mode.
-int64_t wrapped(int64_t i, int64_t size, scene::Wrap wrap) {
-  switch (wrap) {
-    case scene::Wrap::ClampToEdge:
-      return std::clamp<int64_t>(i, 0, size - 1);
-    case scene::Wrap::MirroredRepeat: {
-      const int64_t m = ((i % (2 * size)) + 2 * size) % (2 * size);
-      return m < size ? m : 2 * size - 1 - m;
-    }
-    default:
-      return ((i % size) + size) % size;
-  }
-}
-
 glm::dvec3 normaliseOr(const glm::dvec3& v, const glm::dvec3& otherwise) {
   const double length = glm::length(v);
   return length > 0.0 ? v / length : otherwise;
@@ -61,7 +43,7 @@ glm::dvec3 oracleProject(const scene::Camera& camera, glm::dvec3 position, uint3
 }
 
 RayOracle::RayOracle(const scene::Scene& scene, const scene::PreparedScene& prepared)
-    : scene_(scene), prepared_(prepared) {
+    : scene_(scene), prepared_(prepared), textures_(scene, prepared) {
   for (uint32_t i = 0; i < prepared.instances.size(); ++i) {
     const scene::PreparedInstance& instance = prepared.instances[i];
     const scene::TriangleRange& range = prepared.ranges[instance.range];
@@ -116,43 +98,130 @@ double RayOracle::transmittance(glm::dvec3 origin, glm::dvec3 direction, double 
   return through;
 }
 
-glm::dvec2 RayOracle::uv(const OracleHit& hit) const {
-  const auto& v = prepared_.triangles[hit.triangle].v;
-  const double w[3] = {1.0 - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics.x, hit.barycentrics.y};
-  glm::dvec2 result(0.0);
-  for (int k = 0; k < 3; ++k) result += w[k] * glm::dvec2(prepared_.vertices[v[k]].u, prepared_.vertices[v[k]].v);
-  return result;
+void RayOracle::seeThrough(const scene::Camera& camera, uint32_t width, uint32_t height, LevelRule rule) {
+  camera_ = camera;
+  width_ = width;
+  height_ = height;
+  rule_ = rule;
 }
 
-glm::dvec4 RayOracle::texture(int32_t index, glm::dvec2 uv) const {
-  const scene::PreparedTexture& t = prepared_.textures[index];
-  const scene::Image& image = scene_.images[t.image];
-  const auto texel = [&](int64_t x, int64_t y) {
-    const auto at =
-        static_cast<size_t>(wrapped(y, image.height, t.wrapT) * image.width + wrapped(x, image.width, t.wrapS));
-    glm::dvec4 c;
-    for (int k = 0; k < 4; ++k) c[k] = image.rgba[4 * at + static_cast<size_t>(k)] / 255.0;
-    if (t.srgb) {
-      for (int k = 0; k < 3; ++k) c[k] = srgbToLinear(c[k]);
-    }
-    return c;
-  };
-  const glm::dvec2 p = uv * glm::dvec2(image.width, image.height);
-  if (t.magFilter == scene::Filter::Nearest) {
-    return texel(static_cast<int64_t>(std::floor(p.x)), static_cast<int64_t>(std::floor(p.y)));
+std::array<glm::dvec3, 3> RayOracle::corners(const OracleHit& hit) const {
+  const glm::dmat4 world(prepared_.instances[hit.instance].toWorld);
+  std::array<glm::dvec3, 3> p;
+  for (size_t k = 0; k < 3; ++k) {
+    p[k] = world * glm::dvec4(glm::dvec3(prepared_.positions[prepared_.triangles[hit.triangle].v[k]]), 1.0);
   }
-  const glm::dvec2 base = glm::floor(p - 0.5), f = p - 0.5 - base;
-  const auto x = static_cast<int64_t>(base.x), y = static_cast<int64_t>(base.y);
-  return glm::mix(glm::mix(texel(x, y), texel(x + 1, y), f.x), glm::mix(texel(x, y + 1), texel(x + 1, y + 1), f.x),
-                  f.y);
+  return p;
+}
+
+glm::dvec2 RayOracle::uv(int32_t index, uint32_t triangle, glm::dvec2 barycentrics) const {
+  const scene::PreparedTexture& t = prepared_.textures[index];
+  const auto& v = prepared_.triangles[triangle].v;
+  const double w[3] = {1.0 - barycentrics.x - barycentrics.y, barycentrics.x, barycentrics.y};
+  glm::dvec2 result(0.0);
+  for (int k = 0; k < 3; ++k) {
+    const scene::PackedVertex& vertex = prepared_.vertices[v[k]];
+    result += w[k] * (t.uvSet == 0 ? glm::dvec2(vertex.u, vertex.v) : glm::dvec2(prepared_.uvs1[v[k]]));
+  }
+  return glm::dmat2(t.transform.linear) * result + glm::dvec2(t.transform.offset);
+}
+
+double RayOracle::level(int32_t index, const OracleHit& hit, glm::dvec3 direction) const {
+  if (rule_ == LevelRule::Zero) return 0.0;
+  const glm::dvec3 eye(camera_.eye);
+  const glm::dvec3 pixel = oracleProject(camera_, eye + direction, width_, height_);
+  const auto [p0, p1, p2] = corners(hit);
+  const glm::dvec3 normal = glm::cross(p1 - p0, p2 - p0);
+  const glm::dvec2 size(textures_.size(index));
+  const auto through = [&](double dx, double dy) {
+    return oracleDirection(camera_, glm::dvec2(pixel) + glm::dvec2(dx, dy), width_, height_);
+  };
+  if (rule_ == LevelRule::Cone) {
+    // The pixel's solid angle as two spherical triangles (Van Oosterom and Strackee 1983).
+    const auto solidAngle = [](glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+      return 2.0 * std::atan2(std::abs(glm::dot(a, glm::cross(b, c))),
+                              1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
+    };
+    const glm::dvec3 a = through(-0.5, -0.5), b = through(0.5, -0.5), c = through(0.5, 0.5), d = through(-0.5, 0.5);
+    const double spread = std::sqrt(solidAngle(a, b, c) + solidAngle(a, c, d));
+    const glm::dvec2 corner = uv(index, hit.triangle, {0, 0});
+    const glm::dvec2 e1 = (uv(index, hit.triangle, {1, 0}) - corner) * size;
+    const glm::dvec2 e2 = (uv(index, hit.triangle, {0, 1}) - corner) * size;
+    const double texels = std::abs(e1.x * e2.y - e1.y * e2.x), area = glm::length(normal);
+    return 0.5 * std::log2(texels / area) +
+           std::log2(spread * hit.distance / std::abs(glm::dot(normal, direction) / area));
+  }
+  const auto texelAt = [&](double dx, double dy) {
+    const glm::dvec3 d = through(dx, dy), p = eye + d * (glm::dot(normal, p0 - eye) / glm::dot(normal, d)) - p0;
+    const double twice = glm::dot(normal, normal);
+    return uv(index, hit.triangle,
+              {glm::dot(normal, glm::cross(p, p2 - p0)) / twice, glm::dot(normal, glm::cross(p1 - p0, p)) / twice}) *
+           size;
+  };
+  constexpr double kStep = 1e-3;  // pixels
+  const glm::dvec2 x = (texelAt(kStep, 0) - texelAt(-kStep, 0)) / (2 * kStep);
+  const glm::dvec2 y = (texelAt(0, kStep) - texelAt(0, -kStep)) / (2 * kStep);
+  // Half axes of the ellipse t -> cos t · x + sin t · y, by trying.
+  double longest = 0.0;
+  for (int i = 0; i < 720; ++i) {
+    const double t = i * 3.14159265358979 / 720;
+    longest = std::max(longest, glm::length(std::cos(t) * x + std::sin(t) * y));
+  }
+  return std::log2(longest);
+}
+
+glm::dvec4 RayOracle::look(int32_t index, const OracleHit& hit, double level) const {
+  return textures_.sample(index, uv(index, hit.triangle, hit.barycentrics), level);
+}
+
+glm::dvec4 RayOracle::color(const OracleHit& hit) const {
+  if (prepared_.colors.empty()) return glm::dvec4(1.0);
+  const double w[3] = {1.0 - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics.x, hit.barycentrics.y};
+  glm::dvec4 sum(0.0);
+  for (int k = 0; k < 3; ++k) {
+    const scene::PackedColor c = prepared_.colors[prepared_.triangles[hit.triangle].v[k]];
+    sum += w[k] * glm::dvec4(c.rg & 0xffffu, c.rg >> 16, c.ba & 0xffffu, c.ba >> 16) / 65535.0;
+  }
+  return sum;
 }
 
 double RayOracle::coverage(const OracleHit& hit) const {
   const scene::PackedMaterial& m = material(hit);
-  double alpha = m.baseColor.a;
-  if (m.baseColorTexture >= 0) alpha *= texture(m.baseColorTexture, uv(hit)).a;
+  double alpha = m.baseColor.a * color(hit).a;
+  if (m.baseColorTexture >= 0) alpha *= look(m.baseColorTexture, hit, 0.0).a;
   if ((m.flags & scene::kMaterialMask) != 0) return alpha >= m.alphaCutoff ? 1.0 : 0.0;
   return (m.flags & scene::kMaterialBlend) != 0 ? std::clamp(alpha, 0.0, 1.0) : 1.0;
+}
+
+void RayOracle::reflect(const OracleHit& hit, glm::dvec3 direction, glm::dvec3 base, OracleSurface& s) const {
+  const scene::PackedMaterial& m = material(hit);
+  const auto seen = [&](int32_t texture) {
+    return texture < 0 ? glm::dvec4(1.0) : look(texture, hit, level(texture, hit, direction));
+  };
+  if ((m.flags & scene::kMaterialUnlit) != 0) {
+    s.diffuse = s.f0 = glm::dvec3(0.0);
+    s.f90 = 0.0;
+    s.roughness = 1.0;
+    s.emission = base;
+    return;
+  }
+  const scene::PackedSpecular specular = prepared_.speculars.empty()
+                                             ? scene::PackedSpecular{}
+                                             : prepared_.speculars[prepared_.triangles[hit.triangle].material];
+  const glm::dvec4 tint = seen(specular.colorTexture);
+  if ((m.flags & scene::kMaterialSpecularGlossiness) != 0) {
+    s.f0 = glm::dvec3(specular.f0) * glm::dvec3(tint);
+    s.diffuse = base * (1.0 - std::max({s.f0.x, s.f0.y, s.f0.z}));
+    s.roughness = 1.0 - m.roughness * tint.a;
+    return;
+  }
+  const glm::dvec4 mr = seen(m.metallicRoughnessTexture);
+  const double metallic = m.metallic * mr.b, weight = specular.weight * seen(specular.weightTexture).a;
+  s.roughness = m.roughness * mr.g;
+  const glm::dvec3 dielectric = glm::min(glm::dvec3(specular.f0) * glm::dvec3(tint), 1.0) * weight;
+  s.diffuse = base * (1.0 - metallic);
+  s.f0 = glm::mix(dielectric, base, metallic);
+  s.f90 = weight * (1.0 - metallic) + metallic;
 }
 
 OracleSurface RayOracle::surface(const OracleHit& hit, glm::dvec3 direction) const {
@@ -178,12 +247,12 @@ OracleSurface RayOracle::surface(const OracleHit& hit, glm::dvec3 direction) con
   if (mirrors) s.geometricNormal = -s.geometricNormal;
   const bool front = glm::dot(s.geometricNormal, direction) < 0.0;
 
-  const glm::dvec2 place = uv(hit);
+  const auto seen = [&](int32_t texture) { return look(texture, hit, level(texture, hit, direction)); };
   // All in object space, where the file's tangent frame is right-handed up to its sign; only then to the world.
   glm::dvec3 bent = n = glm::normalize(n);
   if (m.normalTexture >= 0) {
     tangent = normaliseOr(tangent - n * glm::dot(n, tangent), glm::dvec3(0.0));
-    glm::dvec3 mapped = glm::dvec3(texture(m.normalTexture, place)) * 2.0 - 1.0;
+    glm::dvec3 mapped = glm::dvec3(seen(m.normalTexture)) * 2.0 - 1.0;
     mapped.x *= m.normalScale;
     mapped.y *= m.normalScale;
     bent = tangent * mapped.x + glm::cross(n, tangent) * bitangentSign * mapped.y + n * mapped.z;
@@ -196,21 +265,13 @@ OracleSurface RayOracle::surface(const OracleHit& hit, glm::dvec3 direction) con
   const double facing = glm::dot(s.normal, direction);
   if (facing > 0.0) s.normal = glm::normalize(s.normal - 2.0 * facing * direction);
 
-  glm::dvec4 base(m.baseColor);
-  if (m.baseColorTexture >= 0) base *= texture(m.baseColorTexture, place);
-  double metallic = m.metallic;
-  s.roughness = m.roughness;
-  if (m.metallicRoughnessTexture >= 0) {
-    const glm::dvec4 mr = texture(m.metallicRoughnessTexture, place);
-    s.roughness *= mr.g;
-    metallic *= mr.b;
-  }
-  s.diffuse = glm::dvec3(base) * (1.0 - metallic);
-  s.f0 = glm::mix(glm::dvec3(0.04), glm::dvec3(base), metallic);
   if (front || (m.flags & scene::kMaterialDoubleSided) != 0) {
     s.emission = glm::dvec3(m.emission);
-    if (m.emissiveTexture >= 0) s.emission *= glm::dvec3(texture(m.emissiveTexture, place));
+    if (m.emissiveTexture >= 0) s.emission *= glm::dvec3(seen(m.emissiveTexture));
   }
+  glm::dvec3 base = glm::dvec3(m.baseColor) * glm::dvec3(color(hit));
+  if (m.baseColorTexture >= 0) base *= glm::dvec3(seen(m.baseColorTexture));
+  reflect(hit, direction, base, s);
   return s;
 }
 

@@ -1,13 +1,16 @@
 // What a ray meets and what is there, in double precision over the prepared triangles, by brute force and from the
-// papers: Möller and Trumbore 1997, glTF 2.0's material model and texture lookup. Slow, and shares no code with the
-// shaders.
+// papers: Möller and Trumbore 1997, the material models of glTF 2.0 and its extensions. Slow, and shares no code with
+// the shaders.
 #pragma once
 
 #include <weir/scene/prepared.h>
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
+
+#include "support/texture_oracle.h"
 
 namespace weir::test {
 
@@ -22,7 +25,14 @@ struct OracleHit {
 struct OracleSurface {
   glm::dvec3 position{0.0}, geometricNormal{0.0}, normal{0.0};  ///< both normals face the viewer
   glm::dvec3 diffuse{0.0}, f0{0.0}, emission{0.0};
-  double roughness = 0.0;
+  double roughness = 0.0, f90 = 1.0;
+};
+
+/// How the level of a texture follows from what a pixel covers of it; Zero: it doesn't.
+enum class LevelRule : uint8_t {
+  Zero,
+  Cone,         ///< Akenine-Möller et al. 2021, eq. 3, with the root of the pixel's solid angle as the cone's
+  Derivatives,  ///< the longer half axis of the pixel's circle in the texture
 };
 
 /// Direction through a point of the picture, in pixels from the top left; unit length.
@@ -34,6 +44,9 @@ class RayOracle {
  public:
   RayOracle(const scene::Scene& scene, const scene::PreparedScene& prepared);
 
+  /// Surfaces from now on are what a pixel of this camera shows of them.
+  void seeThrough(const scene::Camera& camera, uint32_t width, uint32_t height, LevelRule rule);
+
   /// Every crossing with 0 < distance < tMax, nearest first; distances in units of `direction`.
   std::vector<OracleHit> crossings(glm::dvec3 origin, glm::dvec3 direction, double tMax = 1e300) const;
   /// The nearest one that is not masked away. `cameraSides`: backs of single-sided surfaces don't count.
@@ -43,13 +56,18 @@ class RayOracle {
 
   /// Alpha of glTF: 0 or 1 for MASK, the alpha itself for BLEND, 1 for OPAQUE.
   double coverage(const OracleHit& hit) const;
-  glm::dvec2 uv(const OracleHit& hit) const;
   OracleSurface surface(const OracleHit& hit, glm::dvec3 direction) const;
-  /// A texture of PreparedScene::textures, decoded from sRGB where it is.
-  glm::dvec4 texture(int32_t index, glm::dvec2 uv) const;
+  /// Level of a texture of PreparedScene::textures for a hit along `direction`.
+  double level(int32_t index, const OracleHit& hit, glm::dvec3 direction) const;
   const scene::PackedMaterial& material(const OracleHit& hit) const;
 
  private:
+  glm::dvec2 uv(int32_t index, uint32_t triangle, glm::dvec2 barycentrics) const;
+  glm::dvec4 look(int32_t index, const OracleHit& hit, double level) const;
+  glm::dvec4 color(const OracleHit& hit) const;
+  std::array<glm::dvec3, 3> corners(const OracleHit& hit) const;
+  void reflect(const OracleHit& hit, glm::dvec3 direction, glm::dvec3 base, OracleSurface& s) const;
+
   struct Triangle {
     glm::dvec3 p, e1, e2;
     uint32_t triangle, instance;
@@ -58,6 +76,10 @@ class RayOracle {
   const scene::Scene& scene_;
   const scene::PreparedScene& prepared_;
   std::vector<Triangle> triangles_;
+  TextureOracle textures_;
+  scene::Camera camera_;
+  uint32_t width_ = 1, height_ = 1;
+  LevelRule rule_ = LevelRule::Zero;
 };
 
 }  // namespace weir::test

@@ -1,0 +1,53 @@
+// Directions drawn nearly in proportion to the BSDF of bsdf.glsl: the specular lobe by the visible normals of GGX (Heitz, "Sampling the
+// GGX Distribution of Visible Normals", JCGT 7(4), 2018), the diffuse one by the cosine.
+#ifndef WEIR_BSDF_SAMPLE
+#define WEIR_BSDF_SAMPLE
+
+#include "bsdf.glsl"
+
+// Right-handed, with n as its z axis (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017).
+mat3 basisAround(vec3 n) {
+  const float side = n.z >= 0.0 ? 1.0 : -1.0;
+  const float a = -1.0 / (side + n.z), b = n.x * n.y * a;
+  return mat3(vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x), vec3(b, side + n.y * n.y * a, -n.y), n);
+}
+
+// With which probability the specular lobe is drawn from: about its share of what is reflected.
+float specularShare(Surface s) {
+  const vec3 f = schlick(s.f0, max(dot(s.normal, s.view), 0.0));
+  const float specular = luminance(f), diffuse = luminance((1.0 - f) * s.diffuse);
+  return specular + diffuse > 0.0 ? specular / (specular + diffuse) : 0.0;
+}
+
+// Unit direction from three uniform numbers. It may lie below the surface, where bsdfCos() is zero.
+vec3 sampleBsdf(Surface s, vec3 u) {
+  const mat3 world = basisAround(s.normal);
+  const float angle = 2.0 * kPi * u.y;
+  if (!(u.z < specularShare(s))) {
+    const float r = sqrt(u.x);
+    return normalize(world * vec3(r * cos(angle), r * sin(angle), sqrt(1.0 - u.x)));
+  }
+  const vec3 view = s.view * world;
+  const vec3 v = normalize(vec3(s.alpha * view.xy, max(view.z, 0.0)));
+  const float across = dot(v.xy, v.xy);
+  const vec3 t1 = across > 0.0 ? vec3(-v.y, v.x, 0.0) * inversesqrt(across) : vec3(1.0, 0.0, 0.0), t2 = cross(v, t1);
+  const float r = sqrt(u.x), p1 = r * cos(angle), share = 0.5 * (1.0 + v.z);
+  const float p2 = mix(sqrt(1.0 - p1 * p1), r * sin(angle), share);
+  const vec3 n = p1 * t1 + p2 * t2 + sqrt(max(0.0, 1.0 - p1 * p1 - p2 * p2)) * v;
+  const vec3 h = normalize(world * vec3(s.alpha * n.xy, max(n.z, 0.0)));
+  return normalize(2.0 * dot(s.view, h) * h - s.view);
+}
+
+// Density of sampleBsdf() per steradian.
+float bsdfDensity(Surface s, vec3 l) {
+  const float share = specularShare(s), nv = max(dot(s.normal, s.view), 0.0), a2 = s.alpha * s.alpha;
+  const vec3 sum = l + s.view;
+  float specular = 0.0;
+  if (dot(sum, sum) > 0.0) {
+    // G1(v) D / (4 n·v)
+    specular = ggxD(s.normal, normalize(sum), s.alpha) / (2.0 * (nv + sqrt(a2 + (1.0 - a2) * nv * nv)));
+  }
+  return mix(max(dot(s.normal, l), 0.0) / kPi, specular, share);
+}
+
+#endif
