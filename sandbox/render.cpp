@@ -61,6 +61,18 @@ void run(Words& words, bool exposureGiven) {
   }
 }
 
+void addAnimationOptions(CLI::App& command, weir::render::StageOptions& stage) {
+  CLI::Option* animate =
+      command.add_flag("--animate", stage.animate, "Play a clip of the scene: frame i shows time + i * time step");
+  command.add_option("--clip", stage.clip, "Its name, or its number from 0; without it the first")->needs(animate);
+  command.add_option("--time", stage.time, "Where in the clip frame 0 is, seconds")
+      ->capture_default_str()
+      ->needs(animate);
+  command.add_option("--time-step", stage.timeStep, "Seconds from frame to frame")
+      ->capture_default_str()
+      ->needs(animate);
+}
+
 }  // namespace
 
 void addRenderCommand(CLI::App& app) {
@@ -93,6 +105,7 @@ void addRenderCommand(CLI::App& app) {
                    "Degrees about +Y, counter-clockwise as seen from above")
       ->capture_default_str();
   command->add_option("--camera", o.stage.camera, "Name of a camera of the scene, or ex,ey,ez,tx,ty,tz[,vfov degrees]");
+  addAnimationOptions(*command, o.stage);
   CLI::Option* exposure = command->add_option("--exposure", words->exposure, "EV, for every output.Tonemap");
   command->add_option("--trace", o.trace, "auto, pipeline or query")->capture_default_str();
   command->add_option("--device", o.device, "cpu, a number from `weir devices`, or part of a name");

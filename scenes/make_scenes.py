@@ -6,6 +6,8 @@
 cornell.glb               a box with red and green walls, two blocks and a quad lamp in the ceiling
 cornell-1000-points.glb   the same box, lit by 1000 coloured point lights instead
 materials.glb             spheres, metallic (rows) by roughness (columns), under a quad and a point light
+cornell-moving.glb        the box with a turning block, a skinned column, a morphing ball and a lamp that moves and grows; a clip
+                          for each of them, and one for all
 sky.hdr                   an environment: a clear sky with a low sun over dark ground, 64 x 32 texels
 alpha-mask.glb            leaf and grid cut-outs (a generated PNG) that throw shadows on a floor
 Metres, +Y up. Every file passes the Khronos validator (tools/gltf-validator).
@@ -107,10 +109,11 @@ class Gltf:
         self.binary += data
         return self.add("bufferViews", entry)
 
-    def floats(self, values, bounds=False):
+    def floats(self, values, bounds=False, target=34962):
         width = len(values[0])
         data = b"".join(struct.pack("<%df" % width, *v) for v in values)
-        entry = {"bufferView": self.view(data, 34962), "componentType": FLOAT, "count": len(values), "type": "VEC%d" % width}
+        kind = {1: "SCALAR", 16: "MAT4"}.get(width, "VEC%d" % width)
+        entry = {"bufferView": self.view(data, target), "componentType": FLOAT, "count": len(values), "type": kind}
         if bounds:
             stored = [struct.unpack_from("<%df" % width, data, i * 4 * width) for i in range(len(values))]
             entry["min"] = [min(v[k] for v in stored) for k in range(width)]
@@ -140,11 +143,24 @@ class Gltf:
         used = self.json.setdefault("extensionsUsed", [])
         if extension not in used: used.append(extension)
 
-    def node(self, **entry): self.json["scenes"][0]["nodes"].append(self.add("nodes", entry))
+    def node(self, **entry):
+        index = self.add("nodes", entry)
+        self.json["scenes"][0]["nodes"].append(index)
+        return index
 
     def mesh(self, name, shape, material, **placed):
-        self.node(name=name, mesh=self.add("meshes", {"name": name, "primitives": [{**self.geometry(shape), "material": material}]}),
-                  **placed)
+        return self.node(name=name, mesh=self.add("meshes", {"name": name, "primitives": [{**self.geometry(shape), "material": material}]}),
+                         **placed)
+
+    def clip(self, name, tracks):
+        """`tracks`: (node, path, interpolation, times, values); values are tuples, or numbers for weights."""
+        clip = {"name": name, "channels": [], "samplers": []}
+        for node, path, interpolation, times, values in tracks:
+            values = [v if isinstance(v, tuple) else (v,) for v in values]
+            clip["samplers"].append({"input": self.floats([(t,) for t in times], True, None),
+                                     "output": self.floats(values, False, None), "interpolation": interpolation})
+            clip["channels"].append({"sampler": len(clip["samplers"]) - 1, "target": {"node": node, "path": path}})
+        self.add("animations", clip)
 
     def point_light(self, name, position, color, candela):
         self.use("KHR_lights_punctual")
@@ -180,7 +196,7 @@ class Gltf:
 BLOCKS = (((-0.35, 0.0, -0.3), (0.6, 1.2, 0.6), 18.0), ((0.37, 0.0, 0.35), (0.6, 0.6, 0.6), -17.0))
 
 
-def cornell_room(g):
+def cornell_room(g, blocks=True):
     white = g.material("white")
     room = Shape()
     room.quad((-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1))  # floor
@@ -189,8 +205,9 @@ def cornell_room(g):
     g.mesh("room", room, white)
     g.mesh("left wall", Shape().quad((-1, 0, 1), (-1, 0, -1), (-1, 2, -1), (-1, 2, 1)), g.material("red", RED))
     g.mesh("right wall", Shape().quad((1, 0, -1), (1, 0, 1), (1, 2, 1), (1, 2, -1)), g.material("green", GREEN))
-    g.mesh("tall block", Shape().block(*BLOCKS[0]), white)
-    g.mesh("short block", Shape().block(*BLOCKS[1]), white)
+    if blocks:
+        g.mesh("tall block", Shape().block(*BLOCKS[0]), white)
+        g.mesh("short block", Shape().block(*BLOCKS[1]), white)
     g.camera((0, 1, 3.9), (0, 1, 0), 39.0, 1.0)
 
 
@@ -225,6 +242,69 @@ def cornell_points(path):
         placed += 1
     for node in g.json["nodes"]:
         if node.get("name") == "": del node["name"]
+    g.write(path)
+
+
+def turn(axis, degrees):
+    """Quaternion x y z w."""
+    s = math.sin(math.radians(degrees) / 2)
+    return (axis[0] * s, axis[1] * s, axis[2] * s, math.cos(math.radians(degrees) / 2))
+
+
+def column(g, material, base, height, half, rings):
+    """A square column on two joints, the upper one half way up. The node of the upper joint."""
+    shape, joints, weights = Shape(), [], []
+    corners = ((-half, half), (half, half), (half, -half), (-half, -half))
+    for (x0, z0), (x1, z1) in zip(corners, corners[1:] + corners[:1]):
+        for r in range(rings): shape.quad((x0, height * r / rings, z0), (x1, height * r / rings, z1),
+                                          (x1, height * (r + 1) / rings, z1), (x0, height * (r + 1) / rings, z0))
+    shape.quad(*((x, height, z) for x, z in corners))
+    for p in shape.positions:
+        upper = min(1.0, max(0.0, (p[1] / height - 0.3) / 0.4))
+        joints.append((0, 1 if upper > 0 else 0, 0, 0))
+        weights.append((1.0 - upper, upper, 0.0, 0.0))
+    primitive = {**g.geometry(shape), "material": material}
+    data = b"".join(struct.pack("<4H", *j) for j in joints)
+    primitive["attributes"]["JOINTS_0"] = g.add("accessors", {"bufferView": g.view(data, 34962), "componentType": USHORT,
+                                                              "count": len(joints), "type": "VEC4"})
+    primitive["attributes"]["WEIGHTS_0"] = g.floats(weights)
+    upper = g.add("nodes", {"name": "upper joint", "translation": [0, height / 2, 0]})
+    lower = g.node(name="lower joint", translation=list(base), children=[upper])
+    inverse = g.floats([(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -y, 0, 1) for y in (0, height / 2)], False, None)
+    skin = g.add("skins", {"name": "column", "joints": [lower, upper], "skeleton": lower, "inverseBindMatrices": inverse})
+    g.node(name="column", mesh=g.add("meshes", {"name": "column", "primitives": [primitive]}), skin=skin)
+    return upper
+
+
+def cornell_moving(path):
+    g = Gltf()
+    cornell_room(g, blocks=False)
+    white = g.material("block", (0.7, 0.7, 0.75))
+    block = g.mesh("block", Shape().block((0, 0, 0), (0.5, 0.8, 0.5), 0), white, translation=[-0.45, 0, -0.35])
+    upper = column(g, g.material("column", (0.35, 0.5, 0.7)), (0.45, 0, -0.35), 1.2, 0.12, 10)
+
+    ball = Shape().sphere(10, 20)
+    primitive = {**g.geometry(ball), "material": g.material("ball", (0.7, 0.55, 0.25), roughness=0.5)}
+    # Squashed to half its height; a normal of the ellipsoid (x, y/2, z) is (n.x, 2 n.y, n.z).
+    normals = [unit((n[0], 2 * n[1], n[2])) for n in ball.normals]
+    primitive["targets"] = [{"POSITION": g.floats([(0, -p[1] / 2, 0) for p in ball.positions], True),
+                             "NORMAL": g.floats([sub(m, n) for m, n in zip(normals, ball.normals)])}]
+    ball = g.node(name="ball", mesh=g.add("meshes", {"name": "ball", "primitives": [primitive], "weights": [0.0]}),
+                  translation=[0.1, 0.25, 0.45], scale=[0.25] * 3)
+    lamp = g.mesh("lamp", Shape().quad((-0.25, 0, -0.2), (0.25, 0, -0.2), (0.25, 0, 0.2), (-0.25, 0, 0.2)),
+                  g.material("lamp", (0.78, 0.78, 0.78), emission=(17.0, 12.0, 4.0)), translation=[0, 1.9, 0])
+    tracks = {
+        "block": [(block, "rotation", "LINEAR", (0, 0.5, 1, 1.5, 2), [turn((0, 1, 0), d) for d in (0, 90, 180, 270, 360)]),
+                  (block, "translation", "CUBICSPLINE", (0, 1, 2),
+                   [(0, 0, 0), (-0.45, 0, -0.35), (0, 0, 0), (0, 0, 0), (-0.25, 0.3, -0.35), (0, 0, 0),
+                    (0, 0, 0), (-0.45, 0, -0.35), (0, 0, 0)])],
+        "column": [(upper, "rotation", "LINEAR", (0, 0.5, 1.5, 2), [turn((0, 0, 1), d) for d in (0, 45, -45, 0)])],
+        "ball": [(ball, "weights", "LINEAR", (0, 1, 2), [0.0, 1.0, 0.0])],
+        "lamp": [(lamp, "translation", "LINEAR", (0, 0.5, 1.5, 2), [(0, 1.9, 0), (0.4, 1.8, 0.2), (-0.4, 1.9, -0.2), (0, 1.9, 0)]),
+                 (lamp, "scale", "LINEAR", (0, 1, 2), [(1, 1, 1), (1.6, 1, 1.2), (1, 1, 1)])],
+    }
+    g.clip("everything", [track for name in tracks for track in tracks[name]])
+    for name in tracks: g.clip(name, tracks[name])
     g.write(path)
 
 
@@ -357,8 +437,8 @@ def sky(path, width=64, height=32):
 
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
-    for name, make in (("cornell", cornell), ("cornell-1000-points", cornell_points), ("materials", materials),
-                       ("alpha-mask", alpha_mask)):
+    for name, make in (("cornell", cornell), ("cornell-1000-points", cornell_points), ("cornell-moving", cornell_moving),
+                       ("materials", materials), ("alpha-mask", alpha_mask)):
         path = os.path.join(folder, name + ".glb")
         make(path)
         print("%s: %d bytes" % (path, os.path.getsize(path)))

@@ -230,7 +230,7 @@ void Recording::draw(Kernel kernel) {
   const VkRect2D scissor{{0, 0}, extent};
   vkCmdSetViewport(cursor_.commands, 0, 1, &viewport);
   vkCmdSetScissor(cursor_.commands, 0, 1, &scissor);
-  const auto& draws = runtime_.shared_.scene->draws;
+  const auto& draws = *runtime_.shared_.draws;
   for (uint32_t i = 0; i < draws.size(); ++i) {
     vkCmdSetCullMode(cursor_.commands, draws[i].doubleSided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdSetFrontFace(cursor_.commands,

@@ -61,14 +61,33 @@ Executor::Executor(const gpu::Device& device, shader::Compiler& compiler, Regist
   rayCounter_ = gpu::Buffer(device, sizeof(uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Residency::Readback,
                             "ray counter");
   try {
-    sceneSet_ = scene.makeSet(constants_, sizeof(FrameConstants), rayCounter_);
+    makeSceneSets(compiler);
     for (const graph::CompiledPass& pass : graph_.passes)
       passes_.push_back(std::make_unique<PassRuntime>(shared_, pass));
     makeSlots();
   } catch (...) {
-    scene_.freeSet(sceneSet_);
+    freeSceneSets();
     throw;
   }
+}
+
+void Executor::makeSceneSets(shader::Compiler& compiler) {
+  if (!scene_.traits.animated) {
+    sceneSets_[0] = sceneSets_[1] = scene_.makeSet(constants_, sizeof(FrameConstants), rayCounter_);
+    shared_.draws = &scene_.draws;
+    return;
+  }
+  motion_ = std::make_unique<SceneMotion>(device_, compiler, scene_);
+  for (uint32_t parity = 0; parity < 2; ++parity) {
+    const scene::MovingBindings moving = motion_->bindings(parity);
+    sceneSets_[parity] = scene_.makeSet(constants_, sizeof(FrameConstants), rayCounter_, &moving);
+  }
+  shared_.draws = &motion_->draws();
+}
+
+void Executor::freeSceneSets() {
+  if (sceneSets_[1] != sceneSets_[0]) scene_.freeSet(sceneSets_[1]);
+  scene_.freeSet(sceneSets_[0]);
 }
 
 Executor::~Executor() {
@@ -79,7 +98,7 @@ Executor::~Executor() {
     vkDestroyCommandPool(device_.handle(), s.pool, nullptr);
   }
   passes_.clear();
-  scene_.freeSet(sceneSet_);
+  freeSceneSets();
 }
 
 void Executor::makeSlots() {
@@ -97,7 +116,7 @@ void Executor::makeSlots() {
     if (device_.capabilities().timestampPeriod > 0) {
       VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
       queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
-      queries.queryCount = static_cast<uint32_t>(graph_.passes.size() + 1);
+      queries.queryCount = static_cast<uint32_t>(graph_.passes.size() + 2);
       gpu::check(vkCreateQueryPool(device_.handle(), &queries, nullptr, &s.queries), "vkCreateQueryPool");
     }
   }
@@ -115,13 +134,14 @@ void Executor::collect(Slot& slot) {
   gpu::check(vkResetFences(device_.handle(), 1, &slot.fence), "vkResetFences");
   slot.busy = false;
   if (slot.queries != VK_NULL_HANDLE) {
-    std::vector<uint64_t> ticks(passes_.size() + 1);
+    std::vector<uint64_t> ticks(passes_.size() + 2);  // the scene's start, then the passes'; the end
     gpu::check(
         vkGetQueryPoolResults(device_.handle(), slot.queries, 0, static_cast<uint32_t>(ticks.size()), ticks.size() * 8,
                               ticks.data(), 8, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
     const double period = device_.capabilities().timestampPeriod * 1e-6;
-    for (size_t i = 0; i + 1 < ticks.size(); ++i)
+    slot.times.gpuScene = static_cast<double>(ticks[1] - ticks[0]) * period;
+    for (size_t i = 1; i + 1 < ticks.size(); ++i)
       slot.times.gpu.push_back(static_cast<double>(ticks[i + 1] - ticks[i]) * period);
     slot.times.gpuFrame = static_cast<double>(ticks.back() - ticks.front()) * period;
   }
@@ -144,10 +164,10 @@ void Executor::writeConstants(const FrameInput& input, uint32_t slot) {
   c.seed = input.seed;
   c.lights = scene_.lightCount;
   c.instances = scene_.instanceCount;
-  c.sceneDiameter = scene_.diameter;
-  c.sceneLargest = scene_.largestSide;
+  c.sceneDiameter = motion_ ? motion_->diameter() : scene_.diameter;
+  c.sceneLargest = motion_ ? motion_->largestSide() : scene_.largestSide;
   // Depth is near/z in 32-bit floats, so that a near plane this close costs no precision.
-  c.sceneNear = scene_.diameter * 0x1p-20f;
+  c.sceneNear = c.sceneDiameter * 0x1p-20f;
   std::memcpy(constants_.mapped() + slot * kConstantsStride, &c, sizeof c);
   constants_.flush();
 }
@@ -179,14 +199,21 @@ void Executor::beforePass(VkCommandBuffer commands, size_t pass) const {
 }
 
 void Executor::record(Slot& slot, uint32_t slotIndex, const FrameInput& input) {
-  writeConstants(input, slotIndex);
   gpu::check(vkResetCommandPool(device_.handle(), slot.pool, 0), "vkResetCommandPool");
   VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   gpu::check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
   if (slot.queries != VK_NULL_HANDLE) {
-    vkCmdResetQueryPool(slot.commands, slot.queries, 0, static_cast<uint32_t>(passes_.size() + 1));
+    vkCmdResetQueryPool(slot.commands, slot.queries, 0, static_cast<uint32_t>(passes_.size() + 2));
   }
+  const auto parity = static_cast<uint32_t>(frames_ & 1u);
+  stamp(slot, 0);
+  if (motion_) {
+    device_.beginLabel(slot.commands, "scene");
+    motion_->record(slot.commands, slotIndex, parity, input.state, clearNext_);
+    device_.endLabel(slot.commands);
+  }
+  writeConstants(input, slotIndex);
   if (clearNext_) {
     const VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     memoryBarrier(slot.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any, VK_PIPELINE_STAGE_2_TRANSFER_BIT, any);
@@ -195,17 +222,16 @@ void Executor::record(Slot& slot, uint32_t slotIndex, const FrameInput& input) {
                   VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any);
     clearNext_ = false;
   }
-  FrameCursor cursor{slot.commands, sceneSet_, static_cast<uint32_t>(slotIndex * kConstantsStride),
-                     static_cast<uint32_t>(frames_ & 1u)};
+  FrameCursor cursor{slot.commands, sceneSets_[parity], static_cast<uint32_t>(slotIndex * kConstantsStride), parity};
   device_.beginLabel(slot.commands, fmt::format("{} frame {}", graph_.name, input.index));
-  stamp(slot, 0);
+  stamp(slot, 1);
   for (size_t i = 0; i < passes_.size(); ++i) {
     const Clock::time_point start = Clock::now();
     device_.beginLabel(slot.commands, graph_.passes[i].name);
     beforePass(slot.commands, i);
     passes_[i]->record(cursor);
     device_.endLabel(slot.commands);
-    stamp(slot, static_cast<uint32_t>(i + 1));
+    stamp(slot, static_cast<uint32_t>(i + 2));
     slot.times.cpu.push_back(milliseconds(start));
   }
   device_.endLabel(slot.commands);

@@ -3,6 +3,7 @@
 
 #include <weir/execute/frame_constants.h>
 #include <weir/execute/pass_runtime.h>
+#include <weir/execute/scene_motion.h>
 #include <weir/image/image.h>
 
 #include <cstddef>
@@ -25,12 +26,15 @@ struct FrameInput {
   uint32_t index = 0;  ///< frame number: a key of the random numbers
   uint32_t seed = 0;
   bool cut = false;  ///< the camera jumped: history is cleared, nothing moved
+  /// Where a clip has taken the scene; none: where it was, at first at rest. Ignored where no clip moves the scene.
+  const scene::SceneState* state = nullptr;
 };
 
 /// Milliseconds of one frame.
 struct FrameTimes {
   std::vector<double> gpu, cpu;  ///< by pass; gpu is empty on devices without timestamps
   double gpuFrame = 0.0, cpuFrame = 0.0;
+  double gpuScene = 0.0;  ///< of bringing the scene to its state, part of gpuFrame
 };
 
 class Executor {
@@ -65,9 +69,11 @@ class Executor {
   uint64_t rays() const { return rays_; }
   uint64_t transientBytes() const;
   uint64_t historyBytes() const { return resources_.historyBytes(); }
+  /// What a moving scene takes besides SceneGpu::bytes().
+  uint64_t motionBytes() const { return motion_ ? motion_->bytes() : 0; }
 
  private:
-  static constexpr uint32_t kSlots = 2;
+  static constexpr uint32_t kSlots = SceneMotion::kSlots;
   struct Slot {
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -77,6 +83,8 @@ class Executor {
     FrameTimes times;
   };
 
+  void makeSceneSets(shader::Compiler& compiler);
+  void freeSceneSets();
   void makeSlots();
   void collect(Slot& slot);
   void writeConstants(const FrameInput& input, uint32_t slot);
@@ -92,7 +100,8 @@ class Executor {
   Resources resources_;
   Shared shared_;
   gpu::Buffer constants_, rayCounter_;
-  VkDescriptorSet sceneSet_ = VK_NULL_HANDLE;
+  std::unique_ptr<SceneMotion> motion_;         ///< only where a clip moves the scene
+  std::array<VkDescriptorSet, 2> sceneSets_{};  ///< by parity; of a still scene both are one
   std::vector<std::unique_ptr<PassRuntime>> passes_;
   std::array<Slot, kSlots> slots_;
   uint64_t frames_ = 0;

@@ -23,6 +23,7 @@ struct Shared {
   shader::Compiler* compiler = nullptr;
   Registry* registry = nullptr;
   const scene::SceneGpu* scene = nullptr;
+  const std::vector<scene::SceneGpu::Draw>* draws = nullptr;  ///< of each instance in this frame
   const graph::CompiledGraph* graph = nullptr;
   const Resources* resources = nullptr;
   trace::Backend backend = trace::Backend::None;

@@ -64,17 +64,37 @@ std::string buffer(uint32_t binding, const char* access, const char* type, const
 
 struct SceneParts {
   bool geometry = false, materials = false, lights = false, environment = false, acceleration = false;
+  bool previousGeometry = false, previousLights = false, previousAcceleration = false;
 };
 
 // Alpha tests of rays read materials, and lights read emission textures: those come along.
 SceneParts partsOf(const PassDescription& d, const scene::SceneTraits& traits) {
   SceneParts p;
-  p.acceleration = d.has(Need::SceneAcceleration);
-  p.lights = d.has(Need::SceneLights);
+  p.previousAcceleration = d.has(Need::SceneAcceleration, true);
+  p.previousLights = d.has(Need::SceneLights, true);
+  p.previousGeometry = d.has(Need::SceneGeometry, true);
+  p.acceleration = d.has(Need::SceneAcceleration) || p.previousAcceleration;
+  p.lights = d.has(Need::SceneLights) || p.previousLights;
   p.environment = traits.environment && (d.has(Need::SceneEnvironment) || p.lights);
   p.materials = d.has(Need::SceneMaterials) || p.lights || p.acceleration;
-  p.geometry = d.has(Need::SceneGeometry) || p.materials;
+  p.geometry = d.has(Need::SceneGeometry) || p.materials || p.previousGeometry;
   return p;
+}
+
+/// Last frame's scene. What doesn't move is declared once: both names then mean the same data.
+std::string previousDeclarations(const SceneParts& parts, const scene::SceneTraits& traits) {
+  std::string s;
+  if (parts.previousGeometry) {
+    s += traits.deforms ? buffer(scene::kBindPreviousPositions, "readonly", "float", "scenePreviousPositions")
+                        : "#define scenePreviousPositions scenePositions\n";
+    s += traits.animated ? buffer(scene::kBindPreviousInstances, "readonly", "Instance", "scenePreviousInstances")
+                         : "#define scenePreviousInstances sceneInstances\n";
+  }
+  if (parts.previousLights) {
+    s += traits.animated ? buffer(scene::kBindPreviousLights, "readonly", "Light", "scenePreviousLights")
+                         : "#define scenePreviousLights sceneLights\n";
+  }
+  return s;
 }
 
 std::string sceneDeclarations(const SceneParts& parts, uint32_t textures, const scene::SceneTraits& traits) {
@@ -269,9 +289,18 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
   s += scene::traitDefines(k.traits);
   s += kStructs;
   s += sceneDeclarations(parts, k.sceneTextures, k.traits);
+  s += previousDeclarations(parts, k.traits);
   if (traces) {
     s += fmt::format("layout(set = 0, binding = {}) uniform accelerationStructureEXT sceneAcceleration;\n",
                      uint32_t{scene::kBindAcceleration});
+    if (parts.previousAcceleration) {
+      s += "#define NEED_PREVIOUS_ACCELERATION 1\n";
+      s += k.traits.animated
+               ? fmt::format(
+                     "layout(set = 0, binding = {}) uniform accelerationStructureEXT scenePreviousAcceleration;\n",
+                     uint32_t{scene::kBindPreviousAcceleration})
+               : "#define scenePreviousAcceleration sceneAcceleration\n";
+    }
     s += fmt::format("#define CAN_TRACE 1\n#define {} 1\n",
                      kind == KernelKind::RayPipeline ? "TRACE_PIPELINE" : "TRACE_QUERY");
     if (k.countRays) {

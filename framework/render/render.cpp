@@ -79,12 +79,20 @@ std::vector<std::string> wanted(const RenderOptions& o, const graph::CompiledGra
   return names;
 }
 
+/// The moments that the outputs show.
+std::string animationOf(const RenderOptions& o, const Stage& stage) {
+  const uint64_t last = uint64_t{o.firstFrame} + o.frames - 1;
+  const std::string label = animationLabel(stage, last + 1 - o.average, last);
+  return label.empty() ? "none" : label;
+}
+
 std::map<std::string, std::string> header(const RenderOptions& o, const Stage& stage,
                                           const graph::CompiledGraph& graph) {
   std::map<std::string, std::string> h;
   h["weir.scene"] = stage.sceneLabel;
   h["weir.camera"] = stage.cameraLabel;
   h["weir.lights"] = stage.lightsLabel;
+  h["weir.animation"] = animationOf(o, stage);
   h["weir.graph"] = fmt::format("{} ({})", graph.name, std::filesystem::path(o.graph).filename().string());
   std::string params;
   for (const graph::CompiledPass& pass : graph.passes) {
@@ -116,7 +124,8 @@ uint64_t countRays(const gpu::Device& device, shader::Compiler& compiler, Regist
                    const Stage& stage, uint32_t frames) {
   options.countRays = true;
   execute::Executor executor(device, compiler, registry, scene, timed.graph(), options);
-  for (uint32_t f = 0; f < std::min(frames, 3u); ++f) executor.frame({stage.camera, f, 0, false});
+  Player player(stage);
+  for (uint32_t f = 0; f < std::min(frames, 3u); ++f) executor.frame(player.frame(f, 0));
   executor.finish();
   return executor.rays();
 }
@@ -168,13 +177,14 @@ void render(const RenderOptions& o) {
   execute::Executor executor(device, compiler, registry, scene, std::move(compiled), executorOptions);
   facts.compileSeconds = secondsSince(start);
 
+  Player player(stage);
   std::map<std::string, image::RestartAccumulator> means;
   std::vector<execute::FrameTimes> times;
   for (uint32_t r = 0; r < o.restarts; ++r) {
     executor.resetHistory();
     std::map<std::string, FrameMean> window;
     for (uint32_t f = 0; f < o.frames; ++f) {
-      executor.frame({stage.camera, o.firstFrame + f, restartSeed(o.seed, r), false});
+      executor.frame(player.frame(o.firstFrame + f, restartSeed(o.seed, r)));
       if (r == 0 && f == 0 && !o.statistics.empty()) {
         executor.finish();
         facts.firstFrameSeconds = secondsSince(begin);
@@ -207,13 +217,14 @@ void render(const RenderOptions& o) {
     facts.trace = trace::backendName(backend);
     facts.scene = stage.sceneLabel;
     facts.lights = stage.lightsLabel;
+    facts.animation = animationOf(o, stage);
     facts.environment = environmentFacts(stage);
     facts.importTimes = stage.importTimes;
     facts.accelerationSeconds = scene.accelerationSeconds;
     facts.uploadSeconds -= facts.accelerationSeconds;
     facts.peakHostBytes = peakHostBytes();
     facts.prepareSeconds = stage.prepareSeconds;
-    facts.sceneBytes = scene.bytes();
+    facts.sceneBytes = scene.bytes() + executor.motionBytes();
     facts.transientBytes = executor.transientBytes();
     facts.historyBytes = executor.historyBytes();
     facts.rays = countRays(device, compiler, registry, scene, executor, executorOptions, stage, o.frames);

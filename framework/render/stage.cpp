@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -63,6 +64,19 @@ bool hasLights(const scene::Scene& scene) {
   });
 }
 
+std::optional<Playback> choosePlayback(const StageOptions& options, const scene::Scene& scene) {
+  if (!options.animate) {
+    if (!options.clip.empty()) throw InputError("--clip needs --animate");
+    return std::nullopt;
+  }
+  if (!(options.timeStep >= 0.0) || !std::isfinite(options.timeStep))
+    throw InputError(fmt::format("--time-step {}: must be 0 or more seconds", options.timeStep));
+  if (!(options.time >= 0.0) || !std::isfinite(options.time))
+    throw InputError(fmt::format("--time {}: must be 0 or more seconds", options.time));
+  const auto clip = static_cast<size_t>(&scene::chooseClip(scene, options.clip) - scene.clips.data());
+  return Playback{clip, options.time, options.timeStep};
+}
+
 }  // namespace
 
 Stage makeStage(const StageOptions& options, float aspect) {
@@ -88,15 +102,50 @@ Stage makeStage(const StageOptions& options, float aspect) {
   const auto environment = std::chrono::steady_clock::now();
   addEnvironment(options, s);
   s.environmentSeconds = secondsSince(environment);
-  s.camera = scene::chooseCamera(s.scene, options.camera, aspect);
+  s.playback = choosePlayback(options, s.scene);
+  const auto prepare = std::chrono::steady_clock::now();
+  const scene::Clip* clip = s.playback ? &s.scene.clips[s.playback->clip] : nullptr;
+  s.prepared = scene::prepareScene(s.scene, {}, clip);
+  s.prepareSeconds = secondsSince(prepare);
+  std::optional<scene::Bounds> bounds;
+  if (clip != nullptr && options.camera.empty() && s.scene.cameras.empty())
+    bounds = scene::clipBounds(s.scene, s.prepared, *clip);
+  s.camera = scene::chooseCamera(s.scene, options.camera, aspect, bounds ? &*bounds : nullptr);
   const scene::Camera& c = s.camera;
   s.cameraLabel = fmt::format(
       "eye {:.9g} {:.9g} {:.9g} forward {:.9g} {:.9g} {:.9g} up {:.9g} {:.9g} {:.9g} vfov {:.9g}", c.eye.x, c.eye.y,
       c.eye.z, c.forward.x, c.forward.y, c.forward.z, c.up.x, c.up.y, c.up.z, glm::degrees(c.verticalFov));
-  const auto prepare = std::chrono::steady_clock::now();
-  s.prepared = scene::prepareScene(s.scene);
-  s.prepareSeconds = secondsSince(prepare);
   return s;
+}
+
+Player::Player(const Stage& stage) : stage_(stage) {
+  if (stage.prepared.traits.animated) states_.emplace(stage.scene, stage.prepared);
+}
+
+execute::FrameInput Player::frame(uint32_t number, uint32_t seed) {
+  execute::FrameInput input;
+  input.camera = stage_.camera;
+  input.index = number;
+  input.seed = seed;
+  if (!stage_.playback) return input;
+  const scene::Clip& clip = stage_.scene.clips[stage_.playback->clip];
+  const scene::Pose pose = scene::evaluate(stage_.scene, clip, scene::wrapped(clip, stage_.playback->time(number)));
+  input.camera = scene::posed(stage_.camera, pose);
+  if (states_) {
+    state_ = states_->at(pose);
+    input.state = &state_;
+  }
+  return input;
+}
+
+std::string animationLabel(const Stage& stage, uint64_t first, uint64_t last) {
+  if (!stage.playback) return "";
+  const scene::Clip& clip = stage.scene.clips[stage.playback->clip];
+  const auto at = [&](uint64_t frame) {
+    return fmt::format("{:.6g}", scene::wrapped(clip, stage.playback->time(frame)));
+  };
+  if (at(first) == at(last)) return fmt::format("{} at {} s", clip.name, at(last));
+  return fmt::format("{} from {} to {} s", clip.name, at(first), at(last));
 }
 
 }  // namespace weir::render

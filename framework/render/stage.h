@@ -1,12 +1,14 @@
 // Scene, camera and lights from command-line words to the device: what `render`, `bench` and `view` have in common.
 #pragma once
 
+#include <weir/execute/executor.h>
 #include <weir/gpu/device.h>
 #include <weir/scene/import.h>
 #include <weir/scene/scene.h>
 #include <weir/scene/upload.h>
 
-#include <memory>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace weir::render {
@@ -19,6 +21,16 @@ struct StageOptions {
   std::string environment;     ///< file, .exr or .hdr; empty: none
   float environmentScale = 1.0f, environmentRotation = 0.0f;  ///< degrees about +Y, counter-clockwise from above
   std::string camera;                                         ///< as `--camera`
+  bool animate = false;                      ///< `--animate`: frame i shows the clip at time + i · timeStep
+  std::string clip;                          ///< name or number; empty: the first
+  double time = 0.0, timeStep = 1.0 / 60.0;  ///< seconds
+};
+
+/// A clip and the times at which frames show it. It starts over when it ends.
+struct Playback {
+  size_t clip = 0;
+  double start = 0.0, step = 0.0;  ///< seconds
+  double time(uint64_t frame) const { return start + static_cast<double>(frame) * step; }
 };
 
 /// A scene as the user asked for it, still plain data.
@@ -29,11 +41,29 @@ struct Stage {
   std::string sceneLabel;   ///< file name and content hash: tells pictures of different scenes apart
   std::string lightsLabel;  ///< "scene" or "500 points, seed 1"; then the environment's name and content hash
   std::string cameraLabel;
+  std::optional<Playback> playback;  ///< none: the scene stays at rest
   scene::ImportTimes importTimes;
   double environmentSeconds = 0.0, prepareSeconds = 0.0;
 };
 
 /// Reads, lights, arranges. `aspect`: width / height, for a camera that frames the scene. Throws InputError.
 Stage makeStage(const StageOptions& options, float aspect);
+
+/// What frames of a stage show: its camera, and its scene where the clip has taken it. The stage must outlive it.
+class Player {
+ public:
+  explicit Player(const Stage& stage);
+  /// The input for a frame's number; valid until the next call.
+  execute::FrameInput frame(uint32_t number, uint32_t seed);
+
+ private:
+  const Stage& stage_;
+  std::optional<scene::StateMaker> states_;  // only where a clip moves the scene
+  scene::SceneState state_;
+};
+
+/// What tells pictures of different moments apart, such as "Walk at 0.5 s"; empty without playback. `first` and `last`
+/// are the numbers of the frames that a picture shows.
+std::string animationLabel(const Stage& stage, uint64_t first, uint64_t last);
 
 }  // namespace weir::render

@@ -42,6 +42,7 @@ std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<
   j["trace"] = facts.trace;
   j["scene"] = facts.scene;
   j["lights"] = facts.lights;
+  j["animation"] = facts.animation;
   if (const RunFacts::Environment& e = facts.environment; !e.file.empty()) {
     j["environment"] = {
         {"file", e.file},   {"size", {e.width, e.height}}, {"table", {e.columns, e.rows}}, {"integral", e.integral},
@@ -58,6 +59,8 @@ std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<
     j["passes"].push_back(pass);
   }
   j["frame"]["gpu_ms"] = timed ? toJson(quantiles(collect([](const auto& t) { return t.gpuFrame; }))) : Json();
+  // What it takes to bring a moving scene to its state; no time at all when it is still.
+  j["frame"]["scene_gpu_ms"] = timed ? toJson(quantiles(collect([](const auto& t) { return t.gpuScene; }))) : Json();
   j["frame"]["cpu_ms"] = quantiles(collect([](const auto& t) { return t.cpuFrame; })).median;
   j["memory"] = {{"transient_bytes", facts.transientBytes},
                  {"history_bytes", facts.historyBytes},

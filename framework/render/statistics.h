@@ -16,7 +16,7 @@ struct Quantiles {
 Quantiles quantiles(std::vector<double> values);
 
 struct RunFacts {
-  std::string device, driver, trace, scene, lights;
+  std::string device, driver, trace, scene, lights, animation;
   scene::ImportTimes importTimes;
   double prepareSeconds = 0.0, uploadSeconds = 0.0, accelerationSeconds = 0.0, compileSeconds = 0.0;
   double firstFrameSeconds = 0.0;  ///< from the start to the end of the first frame

@@ -1,5 +1,7 @@
 #include <weir/scene/emission_map.h>
 #include <weir/scene/gather_lights.h>
+#include <weir/scene/pose.h>
+#include <weir/scene/scene_state.h>
 
 #include <cmath>
 #include <memory>
@@ -12,6 +14,7 @@ constexpr double kPi = 3.14159265358979323846;
 struct Gathered {
   std::vector<GpuLight> lights;
   std::vector<double> power;  // weights of the alias table; watts up to a common factor
+  std::vector<MovingLight> moving;
 };
 
 void keep(Gathered& out, const GpuLight& light, double power) {
@@ -20,15 +23,32 @@ void keep(Gathered& out, const GpuLight& light, double power) {
   out.power.push_back(power);
 }
 
-void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered& out) {
-  std::vector<std::vector<uint32_t>> perMaterial(prepared.materials.size());
-  // Emissive meshes are always merged: single-sided ones into range 0, double-sided ones into range 1.
-  for (const TriangleRange& range : {prepared.ranges[0], prepared.ranges[1]}) {
+/// An emissive triangle, and the instance that moves it (-1: none).
+struct Emitter {
+  uint32_t triangle;
+  int instance;
+};
+
+std::vector<std::vector<Emitter>> emittersByMaterial(const PreparedScene& prepared) {
+  std::vector<std::vector<Emitter>> result(prepared.materials.size());
+  const auto gather = [&](const TriangleRange& range, int instance) {
     for (uint32_t t = range.first; t < range.first + range.opaque + range.masked; ++t) {
       const uint32_t material = prepared.triangles[t].material;
-      if (prepared.materials[material].flags & kMaterialEmissive) perMaterial[material].push_back(t);
+      if (prepared.materials[material].flags & kMaterialEmissive) result[material].push_back({t, instance});
     }
-  }
+  };
+  // Emissive meshes are merged (single-sided ones into range 0, double-sided ones into range 1), or they move and no
+  // other instance shares their triangles.
+  gather(prepared.ranges[0], -1);
+  gather(prepared.ranges[1], -1);
+  for (size_t i = 0; i < prepared.instances.size(); ++i)
+    if (prepared.moves(prepared.instances[i]))
+      gather(prepared.ranges[prepared.instances[i].range], static_cast<int>(i));
+  return result;
+}
+
+void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered& out) {
+  const std::vector<std::vector<Emitter>> perMaterial = emittersByMaterial(prepared);
   // Material by material, so that one summed-area table lives at a time.
   for (size_t m = 0; m < perMaterial.size(); ++m) {
     if (perMaterial[m].empty()) continue;
@@ -40,33 +60,34 @@ void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered
       map = std::make_unique<EmissionMap>(scene.images[texture.image], texture.wrapS, texture.wrapT, material.emission);
     }
     const bool doubleSided = material.flags & kMaterialDoubleSided;
-    for (uint32_t t : perMaterial[m]) {
+    for (const auto& [t, instance] : perMaterial[m]) {
       const auto& v = prepared.triangles[t].v;
       GpuLight light;
       light.kind = static_cast<uint32_t>(GpuLightKind::Triangle) | (doubleSided ? kLightDoubleSided : 0u) |
                    (map ? kLightTextured : 0u);
-      light.position = prepared.positions[v[0]];
-      light.a = prepared.positions[v[1]] - light.position;
-      light.b = prepared.positions[v[2]] - light.position;
       light.triangle = t;
-      // The area of the triangle that shaders rebuild from the rounded edges.
-      const double area = 0.5 * glm::length(glm::cross(glm::dvec3(light.a), glm::dvec3(light.b)));
-      light.area = static_cast<float>(area);
       light.radiance = material.emission;
-      if (!(light.area > 0.0f) || !std::isfinite(light.area)) continue;
+      const bool hasArea =
+          setTriangle(light, prepared.positions[v[0]], prepared.positions[v[1]], prepared.positions[v[2]]);
       const auto uv = [&](int k) { return prepared.textureUv(texture, v[k]); };
       const double mean = map ? map->mean(uv(0), uv(1), uv(2)) : luminance(material.emission);
-      keep(out, light, kPi * area * mean * (doubleSided ? 2.0 : 1.0));
+      const double radiosity = kPi * mean * (doubleSided ? 2.0 : 1.0);
+      if (instance >= 0 && mean > 0.0) {
+        out.moving.push_back({static_cast<uint32_t>(out.lights.size()), instance, -1, radiosity});
+        out.lights.push_back(light);
+        out.power.push_back(0.0);  // where it is at rest is known once all are there
+      } else if (hasArea) {
+        keep(out, light, radiosity * light.area);
+      }
     }
   }
 }
 
-void gatherPunctual(const Scene& scene, const PreparedScene& prepared, Gathered& out) {
+void gatherPunctual(const Scene& scene, const PreparedScene& prepared, const std::vector<char>& moving, Gathered& out) {
   const double radius = prepared.bounds.radius();
   for (const PunctualLight& from : scene.lights) {
     GpuLight light;
     light.radiance = from.intensity;
-    light.position = from.position;
     double power = luminance(from.intensity);
     switch (from.kind) {
       case LightKind::Point:
@@ -76,7 +97,6 @@ void gatherPunctual(const Scene& scene, const PreparedScene& prepared, Gathered&
         break;
       case LightKind::Spot: {
         light.kind = static_cast<uint32_t>(GpuLightKind::Spot);
-        light.a = from.direction;
         const double inner = std::cos(static_cast<double>(from.innerCone)),
                      outer = std::cos(static_cast<double>(from.outerCone));
         // The bound of 0.001 is KHR_lights_punctual's own.
@@ -87,11 +107,13 @@ void gatherPunctual(const Scene& scene, const PreparedScene& prepared, Gathered&
       }
       case LightKind::Directional:
         light.kind = static_cast<uint32_t>(GpuLightKind::Directional);
-        light.position = glm::vec3(0.0f);
-        light.a = from.direction;
         power *= kPi * radius * radius;
         break;
     }
+    setPunctual(light, from);
+    if (power > 0.0 && from.node >= 0 && !moving.empty() && moving[from.node])
+      out.moving.push_back(
+          {static_cast<uint32_t>(out.lights.size()), -1, static_cast<int>(&from - scene.lights.data()), 0.0});
     keep(out, light, power);
   }
 }
@@ -106,22 +128,53 @@ void gatherEnvironment(const PreparedScene& prepared, Gathered& out) {
 
 }  // namespace
 
-void gatherLights(const Scene& scene, PreparedScene& prepared) {
+bool setTriangle(GpuLight& light, const glm::vec3& p0, const glm::vec3& p1, const glm::vec3& p2) {
+  light.position = p0;
+  light.a = p1 - p0;
+  light.b = p2 - p0;
+  // The area of the triangle that shaders rebuild from the rounded edges.
+  light.area = static_cast<float>(0.5 * glm::length(glm::cross(glm::dvec3(light.a), glm::dvec3(light.b))));
+  if (light.area > 0.0f && std::isfinite(light.area)) return true;
+  light.area = 0.0f;
+  return false;
+}
+
+void setPunctual(GpuLight& light, const PunctualLight& from) {
+  if (from.kind != LightKind::Directional) light.position = from.position;
+  if (from.kind != LightKind::Point) light.a = from.direction;
+}
+
+std::vector<AliasCell> buildLightTable(const std::vector<double>& power, std::vector<GpuLight>& lights) {
+  std::vector<AliasCell> table = buildAliasTable(power);
+  if (table.empty() && !power.empty()) table = buildAliasTable(std::vector<double>(power.size(), 1.0));
+  // What the table of floats really does, not what was asked of it: estimators divide by this.
+  const std::vector<double> probabilities = aliasProbabilities(table);
+  for (size_t i = 0; i < probabilities.size(); ++i) lights[i].pdf = static_cast<float>(probabilities[i]);
+  return table;
+}
+
+void gatherLights(const Scene& scene, PreparedScene& prepared, const Clip* clip) {
   Gathered gathered;
   gatherTriangles(scene, prepared, gathered);
   for (const GpuLight& light : gathered.lights) {
     prepared.traits.texturedLights |= (light.kind & kLightTextured) != 0;
   }
   prepared.triangleLights = static_cast<uint32_t>(gathered.lights.size());
-  gatherPunctual(scene, prepared, gathered);
+  gatherPunctual(scene, prepared, clip != nullptr ? movingNodes(scene, *clip) : std::vector<char>(), gathered);
   prepared.environment = tabulate(scene.environment);
   prepared.traits.environment = scene.environment.shines();
   gatherEnvironment(prepared, gathered);
-  prepared.aliasTable = buildAliasTable(gathered.power);
-  // What the table of floats really does, not what was asked of it: estimators divide by this.
-  const std::vector<double> probabilities = aliasProbabilities(prepared.aliasTable);
-  for (size_t i = 0; i < probabilities.size(); ++i) gathered.lights[i].pdf = static_cast<float>(probabilities[i]);
   prepared.lights = std::move(gathered.lights);
+  if (gathered.moving.empty()) {
+    prepared.aliasTable = buildLightTable(gathered.power, prepared.lights);
+    return;
+  }
+  prepared.traits.animated = true;
+  prepared.movingLights = std::move(gathered.moving);
+  prepared.lightPower = std::move(gathered.power);
+  SceneState rest = StateMaker(scene, prepared).at(restPose(scene));
+  prepared.lights = std::move(rest.lights);
+  prepared.aliasTable = std::move(rest.aliasTable);
 }
 
 }  // namespace weir::scene

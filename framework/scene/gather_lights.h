@@ -5,7 +5,16 @@
 
 namespace weir::scene {
 
-/// Expects range 0, materials, textures and bounds to be ready; PreparedScene::textures index Scene::images.
-void gatherLights(const Scene& scene, PreparedScene& prepared);
+/// Expects geometry, materials, textures and bounds to be ready; PreparedScene::textures index Scene::images. Lights
+/// that the clip moves are kept even if they can't emit at rest, so that a light has one index while the clip plays.
+void gatherLights(const Scene& scene, PreparedScene& prepared, const Clip* clip = nullptr);
+
+/// Position, edges and area of a triangle's light, and whether it has an area at all.
+bool setTriangle(GpuLight& light, const glm::vec3& p0, const glm::vec3& p1, const glm::vec3& p2);
+/// Position and direction of a punctual light.
+void setPunctual(GpuLight& light, const PunctualLight& from);
+/// The alias table of these powers, and into each light the probability that the finished table gives it. Where no
+/// light has any power, all are alike.
+std::vector<AliasCell> buildLightTable(const std::vector<double>& power, std::vector<GpuLight>& lights);
 
 }  // namespace weir::scene

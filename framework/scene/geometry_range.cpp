@@ -10,6 +10,7 @@ namespace weir::scene {
 namespace {
 
 constexpr uint32_t kNone = 0xffffffffu;
+constexpr int kSplitTries = 32;
 
 bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -25,13 +26,15 @@ glm::vec3 normaliseOr(const glm::dvec3& v, const glm::vec3& otherwise) {
 bool GeometryRange::hasArea(const uint32_t (&v)[3]) const {
   const glm::dvec3 a(positions_[v[0]]), b(positions_[v[1]]), c(positions_[v[2]]);
   const glm::dvec3 twice = glm::cross(b - a, c - a);
+  if (deforms_) return finite(a) && finite(b) && finite(c);
   // In double, products of float differences can neither overflow nor, above 1e-23 m, vanish.
   const double area = 0.5 * glm::length(twice);
   return finite(twice) && area > 0.0 && std::isfinite(static_cast<float>(area));
 }
 
 uint32_t GeometryRange::addVertex(const glm::vec3& position, const glm::vec3& normal, const glm::vec4& tangent,
-                                  const glm::vec2& uv) {
+                                  const glm::vec2& uv, uint32_t source) {
+  sources_.push_back({primitives_, source});
   positions_.push_back(position);
   vertices_.push_back({packNormal(normal), packTangent(tangent), uv.x, uv.y});
   return static_cast<uint32_t>(positions_.size() - 1);
@@ -78,7 +81,7 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
     glm::vec4 tangent(0.0f, 0.0f, 1.0f, 1.0f);
     if (smooth) normals[i] = normal = normaliseOr(cofactor * glm::dvec3(primitive.normals[i]), primitive.normals[i]);
     if (givenTangents) tangent = worldTangent(primitive.tangents[i], normal);
-    addVertex(position, normal, tangent, uvOf(i));
+    addVertex(position, normal, tangent, uvOf(i), i);
     addExtras(primitive, i);
   }
 
@@ -107,14 +110,16 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
         const glm::vec4 tangent =
             splitTangents ? worldTangent(cornerTangents[corner[k]], normal) : glm::vec4(0.0f, 0.0f, 1.0f, 1.0f);
         const uint32_t packedNormal = packNormal(normal), packedTangent = packTangent(tangent);
-        // Corners that agree after packing share a vertex.
-        uint32_t at = firstSplit[local[k]];
-        while (at != kNone && (vertices_[splits[at].vertex].normal != packedNormal ||
-                               vertices_[splits[at].vertex].tangent != packedTangent))
-          at = splits[at].next;
+        // Corners that agree after packing share a vertex. Only the latest ones are asked: the hub of a fan has as many
+        // as there are triangles.
+        uint32_t at = deforms_ && !smooth ? kNone : firstSplit[local[k]];
+        for (int tries = 0; at != kNone && (vertices_[splits[at].vertex].normal != packedNormal ||
+                                            vertices_[splits[at].vertex].tangent != packedTangent);
+             ++tries)
+          at = tries < kSplitTries ? splits[at].next : kNone;
         if (at == kNone) {
           at = static_cast<uint32_t>(splits.size());
-          splits.push_back({addVertex(p[k], normal, tangent, uvOf(local[k])), firstSplit[local[k]]});
+          splits.push_back({addVertex(p[k], normal, tangent, uvOf(local[k]), local[k]), firstSplit[local[k]]});
           addExtras(primitive, local[k]);
           firstSplit[local[k]] = at;
         }
@@ -123,9 +128,10 @@ void GeometryRange::add(const Primitive& primitive, uint32_t material, const glm
     }
     triangles_.push_back(triangle);
   }
+  ++primitives_;
 }
 
-void GeometryRange::finish(PreparedScene& scene) {
+void GeometryRange::finish(PreparedScene& scene, std::vector<VertexSource>* sources) {
   TriangleRange range;
   range.first = static_cast<uint32_t>(scene.triangles.size());
   const uint32_t base = static_cast<uint32_t>(scene.positions.size());
@@ -151,6 +157,7 @@ void GeometryRange::finish(PreparedScene& scene) {
           scene.vertices.push_back(vertices_[v]);
           if (!colors_.empty()) scene.colors.push_back(colors_[v]);
           if (!uvs1_.empty()) scene.uvs1.push_back(uvs1_[v]);
+          if (sources != nullptr) sources->push_back(sources_[v]);
         }
         v = base + now;
       }
@@ -159,6 +166,8 @@ void GeometryRange::finish(PreparedScene& scene) {
   }
   scene.ranges.push_back(range);
   scene.droppedTriangles += dropped_;
+  primitives_ = 0;
+  sources_.clear();
   positions_.clear();
   vertices_.clear();
   colors_.clear();

@@ -61,6 +61,11 @@ AccessorView::AccessorView(GltfImport& import, int accessor) {
     case TINYGLTF_TYPE_VEC4:
       components_ = 4;
       break;
+    case TINYGLTF_TYPE_MAT4:
+      // Columns of other component types would be padded; inverse bind matrices are floats.
+      if (componentType_ != TINYGLTF_COMPONENT_TYPE_FLOAT) import.file.fail(place, "a matrix that is not of floats");
+      components_ = 16;
+      break;
     default:
       import.file.fail(place, "a matrix is no vertex attribute");
   }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,7 +27,7 @@ namespace weir::scene {
 inline constexpr std::array<const char*, 4> kOtherImageFormats = {"KHR_texture_basisu", "EXT_texture_webp",
                                                                   "MSFT_texture_dds", "EXT_texture_avif"};
 
-/// State of one import. The parts below fill `scene` in the order: materials, meshes, nodes, images.
+/// State of one import. The parts below fill `scene` in the order: materials, meshes, animation, nodes, images.
 struct GltfImport {
   GltfFile& file;
   const tinygltf::Model& model;
@@ -34,6 +35,10 @@ struct GltfImport {
   Scene& scene;
   /// Per material: the file's UV sets that become uv0 and uv1, -1: none.
   std::vector<std::array<int, 2>> materialUvSets;
+  uint64_t animationValues = 0;  ///< numbers read so far for morph targets and animations
+
+  /// Counts such numbers. A file that refers to the same bytes over and over must not fill the memory.
+  void countValues(uint64_t count, const std::string& place);
 
   /// Adds a warning unless it was given already.
   void warn(const std::string& text);
@@ -73,8 +78,20 @@ class AccessorView {
   uint64_t elementSize_ = 0;
 };
 
+/// A primitive's attribute of that name, four components; none where it has no such attribute.
+using AttributeReader = std::function<std::optional<AccessorView>(const std::string&)>;
+
+/// Influences (JOINTS_n, WEIGHTS_n) and morph targets of a primitive's vertices; `used` says which of the file's
+/// `vertices` those are, `place` where in the JSON the primitive is.
+void importInfluences(GltfImport& import, const AttributeReader& attribute, const std::vector<uint32_t>& used,
+                      uint64_t vertices, const std::string& place, Primitive& to);
+void importTargets(GltfImport& import, const std::vector<uint32_t>& used, uint64_t vertices, const std::string& place,
+                   Primitive& to);
+
 void importMaterials(GltfImport& import);
 void importMeshes(GltfImport& import);
+/// Scene::nodes as the file lists them, its skins and clips; instances, lights and cameras come with importNodes.
+void importAnimation(GltfImport& import);
 void importNodes(GltfImport& import);
 /// Decodes, on several threads, the images that some material uses; the others stay empty (width 0).
 void importImages(GltfImport& import);

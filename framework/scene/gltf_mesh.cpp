@@ -163,7 +163,6 @@ class MeshImport {
       return false;
     }
     if (positions->count() >= kUnused) import_.file.fail(place_, "more than 32 bits of vertices");
-    if (from.attributes.contains("JOINTS_0")) import_.warn("skins are not animated yet: meshes keep their rest pose");
     to.material = from.material;
     to.indices = readTriangles(from, positions->count());
     const std::vector<uint32_t> used = compact(to.indices, positions->count());
@@ -183,6 +182,10 @@ class MeshImport {
     readUvs(from, sets[0], used, positions->count(), to.uv0);
     readUvs(from, sets[1], used, positions->count(), to.uv1);
     readColors(from, used, positions->count(), to);
+    importInfluences(
+        import_, [&](const std::string& name) { return attribute(from, name, 4, 4); }, used, positions->count(), place_,
+        to);
+    importTargets(import_, used, positions->count(), place_, to);
     return true;
   }
 

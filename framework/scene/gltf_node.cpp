@@ -1,38 +1,15 @@
 // The node hierarchy, multiplied out: instances, lights and cameras in the world.
 #include <weir/scene/gltf_import.h>
+#include <weir/scene/pose.h>
 
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
+#include <set>
+#include <utility>
 
 namespace weir::scene {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-glm::dmat4 localTransform(GltfImport& import, const tinygltf::Node& node) {
-  glm::dmat4 m(1.0);
-  if (node.matrix.size() == 16) {
-    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[i];
-    if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0)
-      import.warn("a node's matrix is not affine; its last row is taken as 0 0 0 1");
-    m[0][3] = m[1][3] = m[2][3] = 0.0;
-    m[3][3] = 1.0;
-    return m;
-  }
-  if (node.rotation.size() == 4) {
-    glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    const double length = std::sqrt(glm::dot(q, q));
-    if (length > 0.0 && std::isfinite(length))
-      m = glm::mat4_cast(q / length);
-    else
-      import.warn("a node's rotation has no direction and is ignored");
-  }
-  if (node.scale.size() == 3)
-    for (int i = 0; i < 3; ++i) m[i] *= node.scale[i];
-  if (node.translation.size() == 3)
-    m[3] = glm::dvec4(node.translation[0], node.translation[1], node.translation[2], 1.0);
-  return m;
-}
 
 class NodeImport {
  public:
@@ -40,6 +17,8 @@ class NodeImport {
 
   void run() {
     checkTree();
+    for (size_t i = 0; i < parent_.size(); ++i) import_.scene.nodes[i].parent = parent_[i];
+    pose_ = restPose(import_.scene);
     for (const Mesh& mesh : import_.scene.meshes) {
       uint64_t count = 0;
       for (const Primitive& primitive : mesh.primitives) count += primitive.indices.size() / 3;
@@ -97,9 +76,8 @@ class NodeImport {
     struct Visit {
       int node;
       uint32_t depth;
-      glm::dmat4 parent;
     };
-    std::vector<Visit> stack{{root, 1, glm::dmat4(1.0)}};
+    std::vector<Visit> stack{{root, 1}};
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
@@ -107,34 +85,41 @@ class NodeImport {
       const std::string place = "/nodes/" + std::to_string(visit.node);
       if (visit.depth > import_.limits.nodeDepth)
         import_.file.fail(place, "deeper than " + std::to_string(import_.limits.nodeDepth) + " nodes");
-      const glm::dmat4 world = visit.parent * localTransform(import_, node);
+      const glm::dmat4& world = pose_.world[visit.node];
       const glm::mat4 rounded(world);
       for (int i = 0; i < 16; ++i)
         if (!std::isfinite(rounded[i / 4][i % 4])) import_.file.fail(place, "its transform is not finite");
-      if (node.mesh >= 0) addInstance(visit.node, node.mesh, rounded, place);
-      if (node.camera >= 0) addCamera(node, world, place);
-      addLight(node, world, place);
+      if (node.mesh >= 0) addInstance(visit.node, rounded, place);
+      if (node.camera >= 0) addCamera(visit.node, place);
+      addLight(visit.node, place);
       // Pushed in reverse, so that instances come out in the file's order.
-      for (size_t i = node.children.size(); i-- > 0;) stack.push_back({node.children[i], visit.depth + 1, world});
+      for (size_t i = node.children.size(); i-- > 0;) stack.push_back({node.children[i], visit.depth + 1});
     }
   }
 
-  void addInstance(int node, int mesh, const glm::mat4& toWorld, const std::string& place) {
+  void addInstance(int node, const glm::mat4& toWorld, const std::string& place) {
+    const int mesh = import_.model.nodes[node].mesh, skin = import_.model.nodes[node].skin;
     triangles_ += meshTriangles_[mesh];
     if (triangles_ > import_.limits.triangles)
       import_.file.fail(place,
                         "more than " + std::to_string(import_.limits.triangles) + " triangles with all instances");
-    import_.scene.instances.push_back({mesh, node, toWorld});
+    if (skin >= 0) checkSkin(mesh, skin, place);
+    import_.scene.instances.push_back({mesh, node, toWorld, skin});
   }
 
-  /// A direction through the upper 3x3, unit length; `otherwise` where it collapses.
-  static glm::vec3 direction(const glm::dmat4& world, const glm::dvec3& way) {
-    const glm::dvec3 d = glm::dmat3(world) * way;
-    const double length = glm::length(d);
-    return glm::vec3(length > 0.0 && std::isfinite(length) ? d / length : way);
+  /// Every influence names a joint that the skin has.
+  void checkSkin(int mesh, int skin, const std::string& place) {
+    const size_t joints = import_.scene.skins[skin].joints.size();
+    if (!checkedSkins_.insert({mesh, skin}).second) return;
+    for (const Primitive& primitive : import_.scene.meshes[mesh].primitives)
+      for (const Influence& influence : primitive.influences)
+        if (influence.joint >= joints)
+          import_.file.fail(place, "its mesh refers to joint " + std::to_string(influence.joint) + " of skin " +
+                                       std::to_string(skin) + ", which has " + std::to_string(joints));
   }
 
-  void addCamera(const tinygltf::Node& node, const glm::dmat4& world, const std::string& place) {
+  void addCamera(int index, const std::string& place) {
+    const auto& node = import_.model.nodes[index];
     const auto& from = import_.model.cameras[node.camera];
     if (from.type != "perspective") {
       import_.warn("orthographic cameras are left out");
@@ -146,20 +131,14 @@ class NodeImport {
     camera.name = !from.name.empty()   ? from.name
                   : !node.name.empty() ? node.name
                                        : "camera " + std::to_string(import_.scene.cameras.size());
-    camera.eye = glm::vec3(world[3]);
-    camera.forward = direction(world, {0.0, 0.0, -1.0});
-    const glm::dvec3 forward(camera.forward);
-    glm::dvec3 up(direction(world, {0.0, 1.0, 0.0}));
-    up -= forward * glm::dot(forward, up);
-    // A sheared node can fold up onto forward; any orthogonal direction then serves.
-    if (!(glm::length(up) > 1e-6))
-      up = glm::cross(forward, std::abs(forward.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0));
-    camera.up = glm::vec3(glm::normalize(up));
+    camera.node = index;
+    scene::place(camera, pose_.world[index]);
     camera.verticalFov = static_cast<float>(from.perspective.yfov);
     import_.scene.cameras.push_back(camera);
   }
 
-  void addLight(const tinygltf::Node& node, const glm::dmat4& world, const std::string& place) {
+  void addLight(int at, const std::string& place) {
+    const auto& node = import_.model.nodes[at];
     const auto found = node.extensions.find("KHR_lights_punctual");
     if (found == node.extensions.end()) return;
     const int index = found->second.Get("light").GetNumberAsInt();
@@ -185,8 +164,8 @@ class NodeImport {
       import_.warn("negative light is taken as none");
       light.intensity = glm::max(light.intensity, glm::vec3(0.0f));
     }
-    light.position = glm::vec3(world[3]);
-    light.direction = direction(world, {0.0, 0.0, -1.0});
+    light.node = at;
+    light = posed(light, pose_);
     if (light.kind != LightKind::Directional)
       light.range = from.range > 0.0 && from.range < 1e38 ? static_cast<float>(from.range) : 0.0f;
     if (light.kind == LightKind::Spot) {
@@ -204,7 +183,9 @@ class NodeImport {
 
   GltfImport& import_;
   std::vector<int> parent_;
+  Pose pose_;
   std::vector<uint64_t> meshTriangles_;
+  std::set<std::pair<int, int>> checkedSkins_;
   uint64_t triangles_ = 0;
 };
 

@@ -16,6 +16,7 @@ enum class Kind {
   Index,
   Indices,
   IndexMap,
+  IndexMaps,
   Integer,
   Integers,
   Number,
@@ -142,9 +143,20 @@ const std::vector<Rule>& rootRules() {
                                               index("indices", "accessors"),
                                               index("material", "materials"),
                                               integer("mode", 0, 6),
-                                              objects("targets", nothing),
+                                              {"targets", Kind::IndexMaps, false, "accessors"},
                                               object("extensions", primitiveExtensions)};
-  static const std::vector<Rule> mesh = {objects("primitives", primitive, true), text("name")};
+  static const std::vector<Rule> mesh = {objects("primitives", primitive, true), numbers("weights", 0), text("name")};
+  static const std::vector<Rule> skin = {{"joints", Kind::Indices, true, "nodes"},
+                                         index("inverseBindMatrices", "accessors"),
+                                         index("skeleton", "nodes"),
+                                         text("name")};
+  static const std::vector<Rule> animationTarget = {index("node", "nodes"), text("path", true)};
+  static const std::vector<Rule> channel = {integer("sampler", 0, kMaxInt, true),
+                                            object("target", animationTarget, true)};
+  static const std::vector<Rule> animationSampler = {index("input", "accessors", true),
+                                                     index("output", "accessors", true), text("interpolation")};
+  static const std::vector<Rule> animation = {objects("channels", channel, true),
+                                              objects("samplers", animationSampler, true), text("name")};
   static const std::vector<Rule> nodeLight = {integer("light", 0, kMaxInt, true)};
   static const std::vector<Rule> nodeExtensions = {object("KHR_lights_punctual", nodeLight)};
   static const std::vector<Rule> node = {index("camera", "cameras"),
@@ -155,6 +167,7 @@ const std::vector<Rule>& rootRules() {
                                          numbers("rotation", 4),
                                          numbers("scale", 3),
                                          numbers("translation", 3),
+                                         numbers("weights", 0),
                                          object("extensions", nodeExtensions),
                                          text("name")};
   static const std::vector<Rule> sampler = {integer("magFilter", 0, kMaxInt), integer("minFilter", 0, kMaxInt),
@@ -174,7 +187,7 @@ const std::vector<Rule>& rootRules() {
                                          object("extensions", rootExtensions),
                                          index("scene", "scenes"),
                                          objects("accessors", accessor),
-                                         objects("animations", nothing),
+                                         objects("animations", animation),
                                          objects("buffers", buffer),
                                          objects("bufferViews", bufferView),
                                          objects("cameras", camera),
@@ -184,7 +197,7 @@ const std::vector<Rule>& rootRules() {
                                          objects("nodes", node),
                                          objects("samplers", sampler),
                                          objects("scenes", scene),
-                                         objects("skins", nothing),
+                                         objects("skins", skin),
                                          objects("textures", texture)};
   return root;
 }
@@ -252,6 +265,13 @@ class Checker {
       case Kind::IndexMap:
         if (!value.is_object()) fail(place, "an object", value);
         for (const auto& [key, entry] : value.items()) checkIndex(entry, rule.target, place + "/" + key);
+        return;
+      case Kind::IndexMaps:
+        checkArray(value, place);
+        for (size_t i = 0; i < value.size(); ++i) {
+          if (!value[i].is_object()) fail(at(i), "an object", value[i]);
+          for (const auto& [key, entry] : value[i].items()) checkIndex(entry, rule.target, at(i) + "/" + key);
+        }
         return;
       case Kind::Integer:
         return checkInteger(value, rule.low, rule.high, range(rule), place);

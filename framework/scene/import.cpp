@@ -51,24 +51,19 @@ void warnAboutExtensions(GltfImport& import) {
       import.warn("extension " + name.get<std::string>() + " is not implemented and ignored");
 }
 
-void warnAboutAnimation(GltfImport& import) {
-  const auto& json = import.file.json();
-  const auto size = [&](const char* key) { return json.contains(key) ? json[key].size() : size_t{0}; };
-  import.scene.animations = static_cast<uint32_t>(size("animations"));
-  if (import.scene.animations) import.warn("animations are not played yet: the scene keeps its rest pose");
-  if (size("meshes") == 0) return;
-  for (const auto& mesh : json["meshes"])
-    for (const auto& primitive : mesh["primitives"])
-      if (primitive.contains("targets") && !primitive["targets"].empty())
-        import.warn("morph targets are not animated yet: meshes keep their rest pose");
-}
-
 }  // namespace
 
 void GltfImport::warn(const std::string& text) {
   if (std::find(scene.warnings.begin(), scene.warnings.end(), text) != scene.warnings.end()) return;
   // A file can name as many things as it likes; a user reads so many.
   if (scene.warnings.size() < 64) scene.warnings.push_back(text);
+}
+
+void GltfImport::countValues(uint64_t count, const std::string& place) {
+  animationValues += count;
+  const uint64_t most = (1u << 22) + 4 * file.loadedBytes();
+  if (animationValues > most)
+    file.fail(place, "more than " + std::to_string(most) + " numbers of animations and morph targets");
 }
 
 Scene importGltf(const std::string& path, const ImportLimits& limits, ImportTimes* times) {
@@ -89,10 +84,10 @@ Scene importGltf(const std::string& path, const ImportLimits& limits, ImportTime
     const tinygltf::Model model = parseStructure(file);
     GltfImport import{file, model, limits, scene, {}};
     warnAboutExtensions(import);
-    warnAboutAnimation(import);
     importMaterials(import);
     spent.read = lap();
     importMeshes(import);
+    importAnimation(import);
     importNodes(import);
     spent.geometry = lap();
     importImages(import);

@@ -12,6 +12,8 @@ namespace weir::scene {
 enum class GpuLightKind : uint32_t { Point = 0, Spot = 1, Directional = 2, Triangle = 3, Environment = 4 };
 inline constexpr uint32_t kLightDoubleSided = 1u << 8;
 inline constexpr uint32_t kLightTextured = 1u << 9;
+/// Corners 1 and 2 have changed places, since the triangle's instance mirrors: only lights that move.
+inline constexpr uint32_t kLightTurned = 1u << 10;
 
 /// One light, 64 bytes, as shaders read it.
 /// Triangle: position = vertex 0, a = edge to vertex 1, b = edge to vertex 2 (world), radiance in nit.

@@ -2,12 +2,14 @@
 #include <weir/scene/gather_lights.h>
 #include <weir/scene/geometry_range.h>
 #include <weir/scene/prepare_materials.h>
+#include <weir/scene/prepare_motion.h>
 #include <weir/scene/prepared.h>
 #include <weir/scene/spatial_sort.h>
 #include <weir/scene/tangent_space.h>
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <unordered_map>
 
 namespace weir::scene {
@@ -36,6 +38,15 @@ std::vector<glm::vec2> coordinatesOf(const Primitive& primitive, const PreparedT
   return uvs;
 }
 
+/// Tangents of a primitive that lacks them although its material has a normal map; else empty.
+std::vector<glm::vec4> tangentsOf(const PreparedScene& prepared, const Primitive& p) {
+  const size_t count = p.positions.size();
+  const bool given = p.normals.size() == count && p.tangents.size() == count;
+  const int32_t map = prepared.materials[packedIndex(prepared, p)].normalTexture;
+  if (given || map < 0) return {};
+  return cornerTangents(p.positions, p.normals, coordinatesOf(p, prepared.textures[map]), p.indices);
+}
+
 /// Tangents of the primitives that lack them although their material has a normal map; once for all their instances.
 class MissingTangents {
  public:
@@ -48,11 +59,7 @@ class MissingTangents {
         if (uses[m] > 0 && !given && prepared.materials[packedIndex(prepared, primitive)].normalTexture >= 0)
           work.emplace_back(&primitive, &tangents_[&primitive]);
       }
-    parallelFor(work.size(), [&](size_t i) {
-      const Primitive& p = *work[i].first;
-      const PreparedTexture& map = prepared.textures[prepared.materials[packedIndex(prepared, p)].normalTexture];
-      *work[i].second = cornerTangents(p.positions, p.normals, coordinatesOf(p, map), p.indices);
-    });
+    parallelFor(work.size(), [&](size_t i) { *work[i].second = tangentsOf(prepared, *work[i].first); });
   }
   /// Empty for any other primitive.
   std::span<const glm::vec4> of(const Primitive& primitive) const {
@@ -72,9 +79,13 @@ class SidedRanges {
         tangents_(tangents),
         ranges_{GeometryRange(prepared), GeometryRange(prepared)} {}
   void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform) {
-    const size_t side = (materials_[material].flags & kMaterialDoubleSided) != 0 ? 1 : 0;
-    ranges_[side].add(primitive, material, transform, tangents_.of(primitive));
+    add(primitive, material, transform, tangents_.of(primitive));
   }
+  void add(const Primitive& primitive, uint32_t material, const glm::dmat4& transform,
+           std::span<const glm::vec4> tangents) {
+    ranges_[side(material)].add(primitive, material, transform, tangents);
+  }
+  size_t side(uint32_t material) const { return (materials_[material].flags & kMaterialDoubleSided) != 0 ? 1 : 0; }
   /// Appends both ranges, empty or not; their numbers.
   std::array<uint32_t, 2> finish(PreparedScene& prepared) {
     std::array<uint32_t, 2> numbers{};
@@ -100,63 +111,183 @@ Bounds rangeBounds(const PreparedScene& prepared, const TriangleRange& range, co
   return bounds;
 }
 
-void placeInstances(const std::vector<PreparedInstance>& unsorted, PreparedScene& prepared) {
+/// An instance and its bounds in the world, at rest.
+struct Placed {
+  PreparedInstance instance;
+  Bounds bounds;
+};
+
+void placeInstances(const std::vector<Placed>& unsorted, PreparedScene& prepared) {
   std::vector<SortItem> items;
-  for (const PreparedInstance& instance : unsorted) {
-    const Bounds bounds = rangeBounds(prepared, prepared.ranges[instance.range], glm::dmat4(instance.toWorld));
-    if (bounds.empty) continue;
-    items.push_back({bounds.low, bounds.high, static_cast<uint32_t>(&instance - unsorted.data())});
-    prepared.bounds.add(bounds.low);
-    prepared.bounds.add(bounds.high);
+  for (const Placed& placed : unsorted) {
+    if (placed.bounds.empty) continue;
+    items.push_back({placed.bounds.low, placed.bounds.high, static_cast<uint32_t>(&placed - unsorted.data())});
+    prepared.bounds.add(placed.bounds.low);
+    prepared.bounds.add(placed.bounds.high);
   }
   spatialSort(items);
-  for (const SortItem& item : items) prepared.instances.push_back(unsorted[item.index]);
+  for (const SortItem& item : items) prepared.instances.push_back(unsorted[item.index].instance);
 }
+
+std::vector<size_t> usesOfMeshes(const Scene& scene) {
+  std::vector<size_t> uses(scene.meshes.size(), 0);
+  for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+  return uses;
+}
+
+/// Arranges the geometry: what is merged, what is shared, what moves.
+class Arrangement {
+ public:
+  Arrangement(const Scene& scene, const Clip* clip, const PrepareLimits& limits, PreparedScene& prepared)
+      : scene_(scene),
+        plan_(scene, clip),
+        prepared_(prepared),
+        uses_(usesOfMeshes(scene)),
+        tangents_(scene, prepared, uses_),
+        merged_(prepared, tangents_) {
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+      shared_.push_back(isInstanced(scene, scene.meshes[m], uses_[m], limits) ? 1 : 0);
+  }
+
+  void run() {
+    for (const Instance& instance : scene_.instances) {
+      if (shared_[instance.mesh] && isPlain(instance, Motion::Still)) continue;
+      for (const Primitive& primitive : primitivesOf(instance)) {
+        if (plan_.of(instance, primitive) == Motion::Still) addTo(merged_, instance, primitive, true);
+      }
+    }
+    for (uint32_t range : merged_.finish(prepared_)) {
+      const Bounds bounds = rangeBounds(prepared_, prepared_.ranges[range], glm::dmat4(1.0));
+      if (bounds.empty) continue;
+      prepared_.instances.push_back({range, glm::mat4(1.0f), false});
+      prepared_.bounds.add(bounds.low);
+      prepared_.bounds.add(bounds.high);
+    }
+    for (const Instance& instance : scene_.instances) {
+      if (isPlain(instance, Motion::Still)) {
+        if (shared_[instance.mesh]) placeShared(instance);
+      } else if (isPlain(instance, Motion::Rigid) && !isEmissive(instance)) {
+        placeShared(instance);
+      } else {
+        placeRigid(instance);
+        placeDeforming(instance, true);
+        placeDeforming(instance, false);
+      }
+    }
+    placeInstances(unsorted_, prepared_);
+    const auto moves = [&](const PreparedInstance& i) { return prepared_.moves(i); };
+    prepared_.traits.animated = std::ranges::any_of(prepared_.instances, moves);
+    prepared_.traits.deforms = !prepared_.deformations.empty();
+  }
+
+ private:
+  const std::vector<Primitive>& primitivesOf(const Instance& instance) const {
+    return scene_.meshes[instance.mesh].primitives;
+  }
+  bool isEmissive(const Instance& instance) const {
+    return std::ranges::any_of(primitivesOf(instance), [&](const Primitive& p) {
+      return (prepared_.materials[packedIndex(prepared_, p)].flags & kMaterialEmissive) != 0;
+    });
+  }
+  /// Whether all of an instance's primitives move that way and keep the shape in which they are stored.
+  bool isPlain(const Instance& instance, Motion motion) const {
+    return std::ranges::all_of(primitivesOf(instance), [&](const Primitive& p) {
+      return plan_.of(instance, p) == motion && !deforms(scene_, instance, p);
+    });
+  }
+
+  void addTo(SidedRanges& ranges, const Instance& instance, const Primitive& primitive, bool inWorld) {
+    const uint32_t material = packedIndex(prepared_, primitive);
+    if (!deforms(scene_, instance, primitive)) {
+      ranges.add(primitive, material, inWorld ? glm::dmat4(instance.toWorld) : glm::dmat4(1.0));
+      return;
+    }
+    glm::dmat4 toWorld;
+    const Primitive shape = plan_.restShape(instance, primitive, toWorld);
+    ranges.add(shape, material, inWorld ? toWorld : glm::dmat4(1.0), tangentsOf(prepared_, shape));
+  }
+
+  void place(uint32_t range, const Instance& instance) {
+    const glm::dmat4 toWorld(instance.toWorld);
+    const bool mirrors = glm::determinant(glm::dmat3(toWorld)) < 0.0;
+    unsorted_.push_back({{range, instance.toWorld, mirrors, plan_.nodeMoves(instance.node) ? instance.node : -1},
+                         rangeBounds(prepared_, prepared_.ranges[range], toWorld)});
+  }
+
+  /// An instance of ranges that all of its mesh's uses share.
+  void placeShared(const Instance& instance) {
+    const auto [entry, fresh] = rangesOf_.try_emplace(instance.mesh);
+    if (fresh) {
+      SidedRanges own(prepared_, tangents_);
+      for (const Primitive& primitive : primitivesOf(instance)) addTo(own, instance, primitive, false);
+      entry->second = own.finish(prepared_);
+    }
+    for (uint32_t range : entry->second) place(range, instance);
+  }
+
+  /// Primitives that move with their node, with triangles that no other instance shares.
+  void placeRigid(const Instance& instance) {
+    SidedRanges own(prepared_, tangents_);
+    bool any = false;
+    for (const Primitive& primitive : primitivesOf(instance)) {
+      if (plan_.of(instance, primitive) != Motion::Rigid) continue;
+      addTo(own, instance, primitive, false);
+      any = true;
+    }
+    if (!any) return;
+    for (uint32_t range : own.finish(prepared_)) place(range, instance);
+  }
+
+  /// Primitives whose vertices move: skinned ones end up in the world, the others follow their node.
+  void placeDeforming(const Instance& instance, bool skinned) {
+    for (size_t side = 0; side < 2; ++side) {
+      GeometryRange range(prepared_, true);
+      std::vector<const Primitive*> primitives;
+      Bounds bounds;
+      for (const Primitive& primitive : primitivesOf(instance)) {
+        const uint32_t material = packedIndex(prepared_, primitive);
+        const bool hasSkin = instance.skin >= 0 && primitive.influencesPerVertex > 0;
+        if (plan_.of(instance, primitive) != Motion::Deforms || hasSkin != skinned || merged_.side(material) != side)
+          continue;
+        const Primitive stored = plan_.undeformed(instance, primitive);
+        range.add(stored, material, glm::dmat4(1.0), tangentsOf(prepared_, stored));
+        primitives.push_back(&primitive);
+        glm::dmat4 toWorld;
+        for (const glm::vec3& p : plan_.restShape(instance, primitive, toWorld).positions)
+          bounds.add(glm::vec3(toWorld * glm::dvec4(glm::dvec3(p), 1.0)));
+      }
+      if (primitives.empty()) continue;
+      std::vector<VertexSource> sources;
+      range.finish(prepared_, &sources);
+      prepared_.ranges.back().doubleSided = side == 1;
+      plan_.addDeformation(instance, primitives, sources, prepared_);
+      const auto number = static_cast<uint32_t>(prepared_.ranges.size() - 1);
+      place(number, instance);
+      if (skinned) unsorted_.back().instance = {number, glm::mat4(1.0f), false, -1};
+      unsorted_.back().bounds = bounds;
+    }
+  }
+
+  const Scene& scene_;
+  MotionPlan plan_;
+  PreparedScene& prepared_;
+  std::vector<size_t> uses_;  // by mesh
+  MissingTangents tangents_;
+  SidedRanges merged_;
+  std::vector<char> shared_;  // by mesh
+  std::map<int, std::array<uint32_t, 2>> rangesOf_;
+  std::vector<Placed> unsorted_;
+};
 
 }  // namespace
 
-PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits) {
+PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits, const Clip* clip) {
   PreparedScene prepared;
   prepareMaterials(scene, prepared);
   for (const Mesh& mesh : scene.meshes)
     for (const Primitive& primitive : mesh.primitives) prepared.traits.vertexColors |= !primitive.colors.empty();
-
-  std::vector<size_t> uses(scene.meshes.size(), 0);
-  for (const Instance& instance : scene.instances) ++uses[instance.mesh];
-  std::vector<char> instanced(scene.meshes.size(), 0);
-  for (size_t m = 0; m < scene.meshes.size(); ++m) instanced[m] = isInstanced(scene, scene.meshes[m], uses[m], limits);
-
-  const MissingTangents tangents(scene, prepared, uses);
-  SidedRanges merged(prepared, tangents);
-  for (const Instance& instance : scene.instances)
-    if (!instanced[instance.mesh])
-      for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
-        merged.add(primitive, packedIndex(prepared, primitive), glm::dmat4(instance.toWorld));
-  for (uint32_t range : merged.finish(prepared)) {
-    const Bounds bounds = rangeBounds(prepared, prepared.ranges[range], glm::dmat4(1.0));
-    if (bounds.empty) continue;
-    prepared.instances.push_back({range, glm::mat4(1.0f), false});
-    prepared.bounds.add(bounds.low);
-    prepared.bounds.add(bounds.high);
-  }
-
-  std::vector<std::array<uint32_t, 2>> rangesOf(scene.meshes.size(), {0, 0});
-  std::vector<PreparedInstance> shared;
-  for (const Instance& instance : scene.instances) {
-    if (!instanced[instance.mesh]) continue;
-    std::array<uint32_t, 2>& ranges = rangesOf[instance.mesh];
-    if (ranges[0] == 0) {
-      SidedRanges own(prepared, tangents);
-      for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
-        own.add(primitive, packedIndex(prepared, primitive), glm::dmat4(1.0));
-      ranges = own.finish(prepared);
-    }
-    const bool mirrors = glm::determinant(glm::dmat3(glm::dmat4(instance.toWorld))) < 0.0;
-    for (uint32_t range : ranges) shared.push_back({range, instance.toWorld, mirrors});
-  }
-  placeInstances(shared, prepared);
-
-  gatherLights(scene, prepared);
+  Arrangement(scene, clip, limits, prepared).run();
+  gatherLights(scene, prepared, clip);
   return prepared;
 }
 

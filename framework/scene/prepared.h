@@ -83,6 +83,21 @@ struct PreparedTexture {
 struct TriangleRange {
   uint32_t first = 0, opaque = 0, masked = 0;
   bool doubleSided = false;
+  int deformation = -1;  ///< of its vertices, which no other range shares; -1: they keep their places
+};
+
+/// What moves the vertices of one range while a clip plays: morph targets, then a skin. Where a skin is, the vertices
+/// end up in the world.
+struct Deformation {
+  uint32_t firstVertex = 0, vertices = 0;                ///< into PreparedScene::positions
+  uint32_t influencesPerVertex = 0, firstInfluence = 0;  ///< into influences; 0 a vertex: no skin
+  uint32_t firstJoint = 0, joints = 0;    ///< into SceneState::joints; Influence::joint counts from first
+  uint32_t targets = 0, firstWeight = 0;  ///< into SceneState::weights
+  /// Vectors a vertex and target (1: position; 2: and normal; 3: and tangent), into morphDeltas:
+  /// [target][vertex][kind].
+  uint32_t kinds = 0, firstDelta = 0;
+  uint32_t firstFlat = 0, flats = 0;  ///< into flatTriangles: those without stored normals
+  bool mirrors = false;               ///< see deformed() in scene/pose.h
 };
 
 /// An instance in the top-level structure; ranges 0 and 1 are the merged static geometry, single-sided and
@@ -92,6 +107,15 @@ struct PreparedInstance {
   uint32_t range = 0;
   glm::mat4 toWorld{1.0f};
   bool flipsWinding = false;  ///< the transform mirrors: front faces are clockwise in object space
+  int node = -1;              ///< whose world matrix it follows while a clip plays; -1: it stays
+};
+
+/// A light that a clip moves.
+struct MovingLight {
+  uint32_t light = 0;      ///< into PreparedScene::lights
+  int instance = -1;       ///< that a triangle belongs to
+  int source = -1;         ///< of a punctual one: into Scene::lights
+  double radiosity = 0.0;  ///< of a triangle: its power for an m²
 };
 
 struct PreparedScene {
@@ -110,12 +134,27 @@ struct PreparedScene {
   uint32_t triangleLights = 0;        ///< how many of `lights` are triangles
   EnvironmentTable environment;       ///< of Scene::environment, which is the last of `lights`
   SceneTraits traits;
-  Bounds bounds;
+  Bounds bounds;                  ///< at rest
   uint64_t droppedTriangles = 0;  ///< degenerate or not finite
 
   /// Where vertex v reads a texture: its set of coordinates, transformed.
   glm::vec2 textureUv(const PreparedTexture& texture, uint32_t v) const {
     return texture.transform(texture.uvSet == 1 ? uvs1[v] : glm::vec2(vertices[v].u, vertices[v].v));
+  }
+
+  // What a clip moves (scene/scene_state.h); empty in a still scene.
+  std::vector<Deformation> deformations;
+  std::vector<Influence> influences;
+  std::vector<glm::vec3> morphDeltas;
+  std::vector<glm::uvec3> flatTriangles;  ///< vertices of triangles whose normal follows from them
+  std::vector<int> posedSkins;            ///< whose joint matrices lie in SceneState::joints, one after another
+  std::vector<int> posedNodes;            ///< whose morph weights lie in SceneState::weights
+  std::vector<MovingLight> movingLights;
+  std::vector<double> lightPower;  ///< weights of the alias table, beside lights; only where lights move
+
+  /// Whether an instance's transform or vertices change while the clip plays.
+  bool moves(const PreparedInstance& instance) const {
+    return instance.node >= 0 || ranges[instance.range].deformation >= 0;
   }
 };
 
@@ -132,7 +171,9 @@ struct PrepareLimits {
   uint64_t mergeTriangles = 2'000'000;
   uint32_t mergeUses = 4;
 };
-PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits = {});
+/// With a clip, what that clip moves stays apart: meshes under nodes that it moves are instances, skinned and morphed
+/// ones have vertices of their own. Everything else is merged as it is at rest, and without a clip that is all.
+PreparedScene prepareScene(const Scene& scene, const PrepareLimits& limits = {}, const Clip* clip = nullptr);
 
 /// What `weir scene` prints.
 struct SceneSummary {

@@ -1,6 +1,7 @@
 // Bounds and cameras of a plain scene, and its summary.
 #include <weir/core/error.h>
 #include <weir/core/text.h>
+#include <weir/scene/prepare_motion.h>
 #include <weir/scene/prepared.h>
 #include <weir/scene/scene.h>
 
@@ -19,10 +20,18 @@ void Bounds::add(const glm::vec3& p) {
 
 Bounds worldBounds(const Scene& scene) {
   Bounds bounds;
+  const MotionPlan plan(scene, nullptr);
   for (const Instance& instance : scene.instances) {
-    const glm::dmat4 toWorld(instance.toWorld);
-    for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
-      for (const glm::vec3& p : primitive.positions) bounds.add(glm::vec3(toWorld * glm::dvec4(glm::dvec3(p), 1.0)));
+    for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
+      glm::dmat4 toWorld(instance.toWorld);
+      const auto add = [&](const Primitive& shape) {
+        for (const glm::vec3& p : shape.positions) bounds.add(glm::vec3(toWorld * glm::dvec4(glm::dvec3(p), 1.0)));
+      };
+      if (deforms(scene, instance, primitive))
+        add(plan.restShape(instance, primitive, toWorld));
+      else
+        add(primitive);
+    }
   }
   return bounds;
 }
@@ -78,8 +87,9 @@ Camera lookAt(const std::vector<float>& n) {
 
 }  // namespace
 
-Camera chooseCamera(const Scene& scene, const std::string& text, float aspect) {
-  if (text.empty()) return scene.cameras.empty() ? framingCamera(worldBounds(scene), aspect) : scene.cameras.front();
+Camera chooseCamera(const Scene& scene, const std::string& text, float aspect, const Bounds* bounds) {
+  if (text.empty() && scene.cameras.empty()) return framingCamera(bounds ? *bounds : worldBounds(scene), aspect);
+  if (text.empty()) return scene.cameras.front();
   std::vector<std::string> names;
   for (const Camera& camera : scene.cameras) {
     if (camera.name == text) return camera;
@@ -133,7 +143,7 @@ SceneSummary summarize(const Scene& scene) {
   s.textures = static_cast<uint32_t>(scene.textures.size());
   s.images = static_cast<uint32_t>(scene.images.size());
   s.cameras = static_cast<uint32_t>(scene.cameras.size());
-  s.animations = scene.animations;
+  s.animations = static_cast<uint32_t>(scene.clips.size());
   s.bounds = worldBounds(scene);
   return s;
 }

@@ -2,6 +2,7 @@
 // Units: metres, radians, right-handed, +Y up; candela (point, spot), lux (directional), nit (emission).
 #pragma once
 
+#include <weir/scene/animation.h>
 #include <weir/scene/environment.h>
 
 #include <array>
@@ -95,12 +96,15 @@ struct Material {
 /// Triangles of one material. Arrays of attributes that the file lacks are empty.
 struct Primitive {
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;   ///< unit length
-  std::vector<glm::vec4> tangents;  ///< xyz unit length, w = ±1
-  std::vector<glm::vec2> uv0, uv1;  ///< uv1 only where a slot of the material reads it
-  std::vector<glm::vec4> colors;    ///< COLOR_0, linear, 0 to 1; scales the base colour and its alpha
-  std::vector<uint32_t> indices;    ///< three a triangle, each below positions.size()
-  int material = -1;                ///< -1: glTF's default material
+  std::vector<glm::vec3> normals;     ///< unit length
+  std::vector<glm::vec4> tangents;    ///< xyz unit length, w = ±1
+  std::vector<glm::vec2> uv0, uv1;    ///< uv1 only where a slot of the material reads it
+  std::vector<glm::vec4> colors;      ///< COLOR_0, linear, 0 to 1; scales the base colour and its alpha
+  std::vector<uint32_t> indices;      ///< three a triangle, each below positions.size()
+  int material = -1;                  ///< -1: glTF's default material
+  uint32_t influencesPerVertex = 0;   ///< a multiple of four; 0: no skin can deform it
+  std::vector<Influence> influences;  ///< so many a vertex
+  std::vector<MorphTarget> targets;
 };
 
 struct Mesh {
@@ -108,11 +112,12 @@ struct Mesh {
   std::vector<Primitive> primitives;
 };
 
-/// One use of a mesh in the world; the node hierarchy is already multiplied out.
+/// One use of a mesh in the world; the node hierarchy is already multiplied out, at rest.
 struct Instance {
   int mesh = -1;
   int node = -1;
   glm::mat4 toWorld{1.0f};
+  int skin = -1;  ///< where its mesh's primitives have influences, these place them, and toWorld doesn't
 };
 
 enum class LightKind : uint8_t { Point, Spot, Directional };
@@ -126,6 +131,7 @@ struct PunctualLight {
   glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< the way the light travels, unit length
   float range = 0.0f;                      ///< metres; 0: unbounded
   float innerCone = 0.0f, outerCone = 0.785398163f;
+  int node = -1;  ///< that it hangs on; -1: none
 };
 
 struct Camera {
@@ -134,6 +140,7 @@ struct Camera {
   glm::vec3 forward{0.0f, 0.0f, -1.0f};  ///< unit length
   glm::vec3 up{0.0f, 1.0f, 0.0f};        ///< unit length, orthogonal to forward
   float verticalFov = 0.785398163f;      ///< radians
+  int node = -1;                         ///< that it hangs on; -1: none
 };
 
 struct Bounds {
@@ -156,17 +163,20 @@ struct Scene {
   Environment environment;  ///< not the file's: `--environment`
   std::vector<Camera> cameras;
   std::vector<std::string> warnings;  ///< what the importer left out or mended, once each
-  uint32_t animations = 0;            ///< how many the file has
+  std::vector<Node> nodes;            ///< all of the file's, whether or not its scene shows them
+  std::vector<Skin> skins;
+  std::vector<Clip> clips;
 };
 
-/// Bounds of all instances, in the world.
+/// Bounds of all instances, in the world, at rest.
 Bounds worldBounds(const Scene& scene);
 
 /// A camera that frames the bounds, looking along -Z from the front, 45° high.
 Camera framingCamera(const Bounds& bounds, float aspect);
 
 /// From `--camera`: the name of one of the scene's cameras, or "ex,ey,ez,tx,ty,tz[,vfov in degrees]".
-/// An empty text takes the scene's first camera, or one that frames it. Throws InputError.
-Camera chooseCamera(const Scene& scene, const std::string& text, float aspect);
+/// An empty text takes the scene's first camera, or one that frames `bounds` (without them: the scene at rest). Throws
+/// InputError.
+Camera chooseCamera(const Scene& scene, const std::string& text, float aspect, const Bounds* bounds = nullptr);
 
 }  // namespace weir::scene

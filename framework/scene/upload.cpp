@@ -11,24 +11,6 @@ namespace {
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr uint32_t kMostSets = 64;  // executors over one scene at a time
 
-std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vector<SceneGpu::Draw>& draws) {
-  std::vector<GpuInstance> result;
-  uint32_t first = 0;
-  for (const PreparedInstance& source : prepared.instances) {
-    const TriangleRange& range = prepared.ranges[source.range];
-    GpuInstance g;
-    for (int c = 0; c < 4; ++c) g.columns[c] = source.toWorld[c];
-    g.firstTriangle = range.first;
-    g.opaqueTriangles = range.opaque;
-    g.flipsWinding = source.flipsWinding ? 1 : 0;
-    g.firstDrawn = first;
-    draws.push_back({range.opaque + range.masked, range.doubleSided, source.flipsWinding});
-    first += draws.back().triangles;
-    result.push_back(g);
-  }
-  return result;
-}
-
 float longestSide(const PreparedScene& prepared) {
   std::vector<float> ofRange;
   for (const TriangleRange& range : prepared.ranges) {
@@ -53,8 +35,30 @@ float longestSide(const PreparedScene& prepared) {
 
 }  // namespace
 
+std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vector<SceneGpu::Draw>& draws) {
+  std::vector<GpuInstance> result;
+  uint32_t first = 0;
+  for (const PreparedInstance& source : prepared.instances) {
+    const TriangleRange& range = prepared.ranges[source.range];
+    GpuInstance g;
+    for (int c = 0; c < 4; ++c) g.columns[c] = source.toWorld[c];
+    g.firstTriangle = range.first;
+    g.opaqueTriangles = range.opaque;
+    g.flipsWinding = source.flipsWinding ? 1 : 0;
+    g.firstDrawn = first;
+    draws.push_back({range.opaque + range.masked, range.doubleSided, source.flipsWinding});
+    first += draws.back().triangles;
+    result.push_back(g);
+  }
+  return result;
+}
+
+float diameterOf(const Bounds& bounds) {
+  return std::max(2.0f * bounds.radius(), glm::length(bounds.centre()) * 0x1p-20f);
+}
+
 SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const PreparedScene& prepared, bool withAcceleration)
-    : device_(&device), withAcceleration_(withAcceleration) {
+    : device_(&device), scene_(&scene), prepared_(&prepared), withAcceleration_(withAcceleration) {
   const VkBufferUsageFlags build = withAcceleration
                                        ? VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
                                              VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT
@@ -74,9 +78,9 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   const auto start = std::chrono::steady_clock::now();
   if (withAcceleration) acceleration_ = trace::Acceleration(device, prepared, positions_);
   accelerationSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  traits = prepared.traits;
   makeLayout();
 
-  traits = prepared.traits;
   lightCount = static_cast<uint32_t>(prepared.lights.size());
   instanceCount = static_cast<uint32_t>(prepared.instances.size());
   largestSide = longestSide(prepared);
@@ -84,7 +88,7 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   for (const PunctualLight& light : scene.lights) {
     if (light.kind != LightKind::Directional) bounds.add(light.position);
   }
-  diameter = std::max(2.0f * bounds.radius(), glm::length(bounds.centre()) * 0x1p-20f);
+  diameter = diameterOf(bounds);
 }
 
 SceneGpu::~SceneGpu() {
@@ -115,6 +119,11 @@ void SceneGpu::makeLayout() {
     bind(kBindEnvironment, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1);
     bind(kBindEnvironmentMap, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1);
   }
+  if (traits.animated) {
+    for (uint32_t b = kBindPreviousPositions; b <= kBindPreviousLights; ++b)
+      bind(b, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1);
+    if (withAcceleration_) bind(kBindPreviousAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1);
+  }
   bind(kBindTextures, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textureCount());
   VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   info.bindingCount = static_cast<uint32_t>(bindings.size());
@@ -123,9 +132,9 @@ void SceneGpu::makeLayout() {
 
   std::vector<VkDescriptorPoolSize> sizes = {
       {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, kMostSets},
-      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostSets * (kBindRays - kBindPositions + 2)},
+      {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostSets * (kBindRays - kBindPositions + 5)},
       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kMostSets * (textureCount() + 1)}};
-  if (withAcceleration_) sizes.push_back({VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kMostSets});
+  if (withAcceleration_) sizes.push_back({VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 2 * kMostSets});
   VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   pool.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
   pool.maxSets = kMostSets;
@@ -134,8 +143,8 @@ void SceneGpu::makeLayout() {
   gpu::check(vkCreateDescriptorPool(device_->handle(), &pool, nullptr, &pool_), "vkCreateDescriptorPool");
 }
 
-VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t slotBytes,
-                                  const gpu::Buffer& rayCounter) const {
+VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t slotBytes, const gpu::Buffer& rayCounter,
+                                  const MovingBindings* moving) const {
   VkDescriptorSetAllocateInfo allocate{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
   allocate.descriptorPool = pool_;
   allocate.descriptorSetCount = 1;
@@ -144,10 +153,25 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
   gpu::check(vkAllocateDescriptorSets(device_->handle(), &allocate, &set), "vkAllocateDescriptorSets");
 
   const VkDescriptorBufferInfo frame{frameConstants.handle(), 0, slotBytes};
-  const std::array handles = {positions_.handle(), vertices_.handle(),  triangles_.handle(),   instances_.handle(),
-                              materials_.handle(), lights_.handle(),    alias_.handle(),       colors_.handle(),
-                              uvs1_.handle(),      speculars_.handle(), textureUses_.handle(), rayCounter.handle()};
-  static_assert(handles.size() == kBindRays - kBindPositions + 1);
+  constexpr uint32_t kOwn = kBindRays - kBindPositions + 1;
+  std::array<VkBuffer, kOwn + 3> handles = {positions_.handle(), vertices_.handle(),    triangles_.handle(),
+                                            instances_.handle(), materials_.handle(),   lights_.handle(),
+                                            alias_.handle(),     colors_.handle(),      uvs1_.handle(),
+                                            speculars_.handle(), textureUses_.handle(), rayCounter.handle()};
+  VkAccelerationStructureKHR top = acceleration_.top();
+  uint32_t count = kOwn;
+  if (moving != nullptr) {
+    handles[0] = moving->positions;
+    handles[1] = moving->vertices;
+    handles[3] = moving->instances;
+    handles[5] = moving->lights;
+    handles[6] = moving->alias;
+    handles[kOwn] = moving->previousPositions;
+    handles[kOwn + 1] = moving->previousInstances;
+    handles[kOwn + 2] = moving->previousLights;
+    top = moving->top;
+    count = kOwn + 3;
+  }
   std::array<VkDescriptorBufferInfo, handles.size()> buffers{};
   std::vector<VkWriteDescriptorSet> writes;
   auto write = [&](uint32_t binding, VkDescriptorType type, uint32_t count) -> VkWriteDescriptorSet& {
@@ -160,15 +184,19 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
     return writes.back();
   };
   write(kBindFrame, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1).pBufferInfo = &frame;
-  for (uint32_t i = 0; i < handles.size(); ++i) {
+  for (uint32_t i = 0; i < count; ++i) {
     buffers[i] = {handles[i], 0, VK_WHOLE_SIZE};
-    write(kBindPositions + i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1).pBufferInfo = &buffers[i];
+    const uint32_t binding = i < kOwn ? kBindPositions + i : kBindPreviousPositions + i - kOwn;
+    write(binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1).pBufferInfo = &buffers[i];
   }
-  VkAccelerationStructureKHR top = acceleration_.top();
   VkWriteDescriptorSetAccelerationStructureKHR acceleration{
       VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR};
   acceleration.accelerationStructureCount = 1;
   acceleration.pAccelerationStructures = &top;
+  VkWriteDescriptorSetAccelerationStructureKHR previous = acceleration;
+  if (moving != nullptr) previous.pAccelerationStructures = &moving->previousTop;
+  if (withAcceleration_ && moving != nullptr)
+    write(kBindPreviousAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1).pNext = &previous;
   if (withAcceleration_)
     write(kBindAcceleration, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1).pNext = &acceleration;
   const VkDescriptorBufferInfo environmentTable{environment_.table(), 0, VK_WHOLE_SIZE};

@@ -30,6 +30,11 @@ enum SceneBinding : uint32_t {
   kBindAcceleration,  ///< only on devices with acceleration structures
   kBindEnvironment,   ///< its table; only in scenes that have one, as the next
   kBindEnvironmentMap,
+  // As in the last frame; only where a clip moves the scene.
+  kBindPreviousPositions,
+  kBindPreviousInstances,
+  kBindPreviousLights,
+  kBindPreviousAcceleration,
   kBindTextures,  ///< last: an array of as many as the scene has
 };
 
@@ -50,10 +55,18 @@ struct GpuTextureUse {
   float texelLevel = 0.0f;
 };
 static_assert(sizeof(GpuTextureUse) == 32);
+/// What stands in set 0 where a clip moves the scene, in place of the scene's own: this frame's and the last one's.
+struct MovingBindings {
+  VkBuffer positions = VK_NULL_HANDLE, vertices = VK_NULL_HANDLE, instances = VK_NULL_HANDLE, lights = VK_NULL_HANDLE,
+           alias = VK_NULL_HANDLE;
+  VkBuffer previousPositions = VK_NULL_HANDLE, previousInstances = VK_NULL_HANDLE, previousLights = VK_NULL_HANDLE;
+  VkAccelerationStructureKHR top = VK_NULL_HANDLE, previousTop = VK_NULL_HANDLE;
+};
 
 class SceneGpu {
  public:
-  /// Uploads and builds everything, and waits.
+  /// Uploads and builds everything, and waits. Where the scene's traits say that a clip moves it, `scene` and
+  /// `prepared` must outlive this, and the buffers hold it at rest.
   SceneGpu(const gpu::Device& device, const Scene& scene, const PreparedScene& prepared, bool withAcceleration);
   ~SceneGpu();
   SceneGpu(const SceneGpu&) = delete;
@@ -61,12 +74,22 @@ class SceneGpu {
 
   VkDescriptorSetLayout layout() const { return layout_; }
   /// A set over this scene, the given frame constants (dynamic offset, `slotBytes` visible) and ray counter.
-  VkDescriptorSet makeSet(const gpu::Buffer& frameConstants, uint64_t slotBytes, const gpu::Buffer& rayCounter) const;
+  /// `moving` is wanted where the traits say so, and else left out.
+  VkDescriptorSet makeSet(const gpu::Buffer& frameConstants, uint64_t slotBytes, const gpu::Buffer& rayCounter,
+                          const MovingBindings* moving = nullptr) const;
   void freeSet(VkDescriptorSet set) const;
 
   uint64_t bytes() const;
   uint32_t textureCount() const { return static_cast<uint32_t>(textures_.size()); }
   bool hasAcceleration() const { return withAcceleration_; }
+  /// What a clip moves, for execute/scene_motion.h.
+  const Scene& source() const { return *scene_; }
+  const PreparedScene& prepared() const { return *prepared_; }
+  const trace::Acceleration& acceleration() const { return acceleration_; }
+  VkBuffer positions() const { return positions_.handle(); }
+  VkBuffer vertices() const { return vertices_.handle(); }
+  VkBuffer lights() const { return lights_.handle(); }
+  VkBuffer alias() const { return alias_.handle(); }
 
   SceneTraits traits;  ///< shaders are compiled for them
 
@@ -88,6 +111,8 @@ class SceneGpu {
   void makeLayout();
 
   const gpu::Device* device_;
+  const Scene* scene_;
+  const PreparedScene* prepared_;
   bool withAcceleration_;
   gpu::Buffer positions_, vertices_, triangles_, instances_, materials_, lights_, alias_, colors_, uvs1_, speculars_,
       textureUses_;
@@ -103,5 +128,10 @@ class SceneGpu {
   VkDescriptorSetLayout layout_ = VK_NULL_HANDLE;
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
 };
+
+/// The prepared instances as shaders read them, where they are at rest, and what rasterisation draws of each.
+std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vector<SceneGpu::Draw>& draws);
+/// Of the bounding sphere; at least twice the float error of its place.
+float diameterOf(const Bounds& bounds);
 
 }  // namespace weir::scene

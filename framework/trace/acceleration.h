@@ -3,6 +3,7 @@
 
 #include <weir/gpu/memory.h>
 #include <weir/scene/prepared.h>
+#include <weir/trace/structure.h>
 
 #include <string>
 #include <vector>
@@ -20,28 +21,17 @@ const char* backendName(Backend backend);
 class Acceleration {
  public:
   Acceleration() = default;
-  /// Builds everything and waits. `positions` holds the scene's vertices (vec3, tightly packed) with a device address.
+  /// Builds everything that keeps its shape, and waits: where a clip moves the scene, bottom-level structures of what
+  /// doesn't deform, and no top (trace/moving_acceleration.h has the rest). `positions` holds the scene's vertices
+  /// (vec3, tightly packed) with a device address.
   Acceleration(const gpu::Device& device, const scene::PreparedScene& scene, const gpu::Buffer& positions);
-  ~Acceleration();
-  Acceleration(Acceleration&& other) noexcept;
-  Acceleration& operator=(Acceleration&& other) noexcept;
 
-  VkAccelerationStructureKHR top() const { return top_.handle; }
+  VkAccelerationStructureKHR top() const { return top_.handle(); }
+  /// Of a range that keeps its shape.
+  VkDeviceAddress bottom(uint32_t range) const { return bottom_[range].address(); }
   uint64_t bytes() const;
 
  private:
-  struct Structure {
-    gpu::Buffer buffer;
-    VkAccelerationStructureKHR handle = VK_NULL_HANDLE;
-    VkDeviceAddress address = 0;
-  };
-  Structure build(const VkAccelerationStructureGeometryKHR* geometries, const std::vector<uint32_t>& counts, bool top,
-                  const std::string& name);
-  void buildBottom(const scene::PreparedScene& scene, const gpu::Buffer& positions);
-  void buildTop(const scene::PreparedScene& scene);
-  void destroy();
-
-  const gpu::Device* device_ = nullptr;
   std::vector<Structure> bottom_;
   Structure top_;
 };

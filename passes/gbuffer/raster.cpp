@@ -14,7 +14,7 @@ void describeGBuffer(PassDescription& d) {
   d.param("jitter", false).doc("Sample a new place in the pixel's box every frame, the same in all pixels");
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneEnvironment);
   d.needs(Need::FrameCamera).needs(Need::FrameIndex);
-  d.needsPrevious(Need::FrameCamera);
+  d.needsPrevious(Need::FrameCamera).needsPrevious(Need::SceneGeometry);
 }
 
 void Raster::describe(PassDescription& d) {

@@ -15,6 +15,7 @@ void Temporal::describe(PassDescription& d) {
   describeReuse(d);
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
   d.needs(Need::FrameCamera).needs(Need::FrameIndex).needsPrevious(Need::FrameCamera);
+  d.needsPrevious(Need::SceneLights).needsPrevious(Need::SceneAcceleration);
 }
 
 void Temporal::prepare(PrepareContext& c) {

@@ -11,7 +11,7 @@
 #endif
 
 const uint kPoint = 0u, kSpot = 1u, kDirectional = 2u, kTriangle = 3u, kEnvironment = 4u;
-const uint kKindMask = 0xffu, kLightDoubleSided = 1u << 8, kLightTextured = 1u << 9;
+const uint kKindMask = 0xffu, kLightDoubleSided = 1u << 8, kLightTextured = 1u << 9, kLightTurned = 1u << 10;
 
 // A point on a light as seen from a surface.
 struct LightSample {
@@ -49,6 +49,16 @@ vec2 placeOnTriangle(uint place) {
   return vec2(root * (1.0 - u.y), root * u.y);
 }
 
+#ifdef SCENE_TEXTURED_LIGHTS
+vec3 lightTexture(Light light, vec2 barycentrics) {
+#ifdef SCENE_ANIMATED
+  // Corners 1 and 2 of a triangle that its transform mirrors have changed places, so that it faces the way that it emits.
+  if ((light.kind & kLightTurned) != 0u) barycentrics = barycentrics.yx;
+#endif
+  return emissionTexture(light.triangle, barycentrics);
+}
+#endif
+
 LightSample evaluateTriangle(Light light, vec2 barycentrics, vec3 position) {
   LightSample s;
   const vec3 normalArea = cross(light.a, light.b);  // length = 2 · area
@@ -65,7 +75,7 @@ LightSample evaluateTriangle(Light light, vec2 barycentrics, vec3 position) {
   }
   s.radiance = light.radiance * (cosine / d2);
 #ifdef SCENE_TEXTURED_LIGHTS
-  if ((light.kind & kLightTextured) != 0u) s.radiance *= emissionTexture(light.triangle, barycentrics);
+  if ((light.kind & kLightTextured) != 0u) s.radiance *= lightTexture(light, barycentrics);
 #endif
   return s;
 }

@@ -5,6 +5,11 @@
 //             m_c = c_c/T + Σ_j (c_j/T) · c_c p̂_c(x_c) / (c_c p̂_c(x_c) + B p̂_j(x_c)),    B = Σ_j c_j, T = B + c_c.
 // With VISIBILITY_RAYS the p̂_j of the weights include the neighbour's visibility. A neighbour whose sample is null or whose target
 // is zero adds nothing and keeps its confidence in every weight; which neighbours take part depends on surfaces alone.
+//
+// With PREVIOUS_DOMAIN the neighbour is a surface of the last frame: its target is evaluated with lights, geometry and shadows as they
+// were then, or energy is lost and gained where something moved. A sample is a place on a light. Its W is per m², and belongs to the
+// light as it was when the sample was drawn: where a triangle's area has changed since, W grows with it, and densities per m² of
+// the old triangle are brought to those of the new one.
 #ifndef WEIR_MERGE
 #define WEIR_MERGE
 
@@ -37,11 +42,31 @@ Merge beginMerge(Surface surface, Reservoir own, float others) {
   return m;
 }
 
+#if defined(PREVIOUS_DOMAIN) && defined(SCENE_ANIMATED)
+LightSample lightThere(uint light, uint place, vec3 position) { return evaluateLight(scenePreviousLights[light], place, position); }
+#ifdef CAN_TRACE
+float visibilityThere(Surface neighbour, LightSample light) { return traceVisibilityPrevious(neighbour, light); }
+#endif
+// What a density per m² of the neighbour's light is per m² of the light here.
+float measureThere(LightSample there, LightSample here) { return there.area / here.area; }
+float weightHere(Reservoir r, LightSample here) {
+  const float before = scenePreviousLights[lightOf(r)].area;  // 0: not a triangle
+  return before > 0.0 ? r.weight * (here.area / before) : r.weight;
+}
+#else
+LightSample lightThere(uint light, uint place, vec3 position) { return evaluateLight(light, place, position); }
+#ifdef CAN_TRACE
+float visibilityThere(Surface neighbour, LightSample light) { return traceVisibility(neighbour, light); }
+#endif
+float measureThere(LightSample there, LightSample here) { return 1.0; }
+float weightHere(Reservoir r, LightSample here) { return r.weight; }
+#endif
+
 // p̂ of a sample at a neighbour's surface, with its visibility there where the weights ask for it.
 float neighbourTarget(Surface neighbour, LightSample light, bool seen) {
   float target = targetFunction(neighbour, light);
 #ifdef VISIBILITY_RAYS
-  if (target > 0.0 && !seen) target *= traceVisibility(neighbour, light);
+  if (target > 0.0 && !seen) target *= visibilityThere(neighbour, light);
 #endif
   return target;
 }
@@ -49,9 +74,10 @@ float neighbourTarget(Surface neighbour, LightSample light, bool seen) {
 void mergeNeighbour(inout Merge m, Surface neighbour, Reservoir r, float confidence, int mis, float u) {
   const float total = m.own.confidence + m.others;
   if (mis == kPairwise && m.ownTarget > 0.0) {
-    const LightSample there = evaluateLight(lightOf(m.own), m.own.place, neighbour.position);
+    const LightSample there = lightThere(lightOf(m.own), m.own.place, neighbour.position);
     const float own = m.own.confidence * m.ownTarget;
-    m.ownMis += confidence / total * (own / (own + m.others * neighbourTarget(neighbour, there, false)));
+    const float theirs = m.others * neighbourTarget(neighbour, there, false) * measureThere(there, m.ownLight);
+    m.ownMis += confidence / total * (own / (own + theirs));
   }
   if (isNull(r)) return;
   const LightSample here = evaluateLight(lightOf(r), r.place, m.surface.position);
@@ -59,11 +85,11 @@ void mergeNeighbour(inout Merge m, Surface neighbour, Reservoir r, float confide
   if (!(target > 0.0)) return;
   float weight = confidence / total;
   if (mis == kPairwise) {
-    const LightSample there = evaluateLight(lightOf(r), r.place, neighbour.position);
-    const float theirs = m.others * neighbourTarget(neighbour, there, isSeen(r));
+    const LightSample there = lightThere(lightOf(r), r.place, neighbour.position);
+    const float theirs = m.others * neighbourTarget(neighbour, there, isSeen(r)) * measureThere(there, here);
     weight *= theirs / (m.own.confidence * target + theirs);
   }
-  offer(m.selection, lightOf(r), r.place, target, weight * target * r.weight, false, u);
+  offer(m.selection, lightOf(r), r.place, target, weight * target * weightHere(r, here), false, u);
 }
 
 // Offers the canonical sample last; what survives is retested for visibility by the caller where the weights used it.

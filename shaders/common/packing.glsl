@@ -22,6 +22,8 @@ vec4 unpackTangent(uint bits) {
   return vec4(unpackNormal(bits & 0xfffeffffu), (bits & 0x10000u) != 0u ? -1.0 : 1.0);
 }
 
+uint packTangent(vec4 t) { return (packNormal(t.xyz) & 0xfffeffffu) | (t.w < 0.0 ? 0x10000u : 0u); }
+
 // Albedo in 11 + 11 + 10 bits, spaced by square roots: fine steps where it is dark.
 uint packAlbedo(vec3 c) {
   const vec3 s = sqrt(clamp(c, 0.0, 1.0));

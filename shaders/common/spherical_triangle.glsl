@@ -47,6 +47,8 @@ vec3 sampleSphericalTriangle(SphericalTriangle t, vec2 u) {
   // Then from b towards the moved corner, uniform in the cosine.
   const vec3 across = moved - t.b;
   const float whole = 0.5 * dot(across, across);  // 1 - cosine of the arc
+  // Seen from a point between b and the moved corner, by rounding: no arc leads from one to the other.
+  if (!(whole < 2.0)) return t.b;
   const float part = u.y * whole;
   const float scale = whole > 0.0 ? sqrt(u.y * (2.0 - part) / (2.0 - whole)) : 0.0;
   return normalize((1.0 - part) * t.b + scale * (across + whole * t.b));

@@ -3,6 +3,8 @@
 //                                                        alpha. flags: kEverySide, or kCameraSides for what a camera sees: glTF
 //                                                        hides the back of single-sided surfaces
 //   float traceTransmittance(origin, direction, tMax)    0: blocked, 1: free, between: through BLEND surfaces
+//   float traceTransmittancePrevious(…)                  the same through last frame's scene, for passes that need
+//                                                        scene.acceleration@previous
 // Distances are in units of `direction`.
 #ifndef WEIR_TRACE
 #define WEIR_TRACE
@@ -29,15 +31,16 @@ Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key, uint flags) 
   return Hit(tracePayload.triangle, tracePayload.instance, tracePayload.barycentrics);
 }
 
-float traceTransmittance(vec3 origin, vec3 direction, float tMax) {
-  countRay();
-  traceThrough = 1.0;
-  // Nothing but any-hit touches the payload on the way; an accepted hit ends the ray, and only a miss says so.
-  traceRayEXT(sceneAcceleration, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xffu, 1u, 0u, 1u,
-              origin, 0.0, direction, tMax, 1);
-  // The miss shader turns a surviving transmittance τ into -τ, so that a blocked ray can be told from a free one.
-  return traceThrough < 0.0 ? -traceThrough : 0.0;
-}
+// A structure can't be a function's parameter, so that each has its own. Nothing but any-hit touches the payload on the way; an
+// accepted hit ends the ray, and only a miss says so: its shader turns a surviving transmittance τ into -τ.
+#define DEFINE_TRANSMITTANCE(name, structure)                                                                             \
+  float name(vec3 origin, vec3 direction, float tMax) {                                                                   \
+    countRay();                                                                                                           \
+    traceThrough = 1.0;                                                                                                   \
+    traceRayEXT(structure, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xffu, 1u, 0u, 1u,     \
+                origin, 0.0, direction, tMax, 1);                                                                         \
+    return traceThrough < 0.0 ? -traceThrough : 0.0;                                                                      \
+  }
 #endif
 
 #ifdef TRACE_QUERY
@@ -61,23 +64,35 @@ Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key, uint flags) 
              instance, rayQueryGetIntersectionBarycentricsEXT(query, true));
 }
 
-float traceTransmittance(vec3 origin, vec3 direction, float tMax) {
-  countRay();
-  rayQueryEXT query;
-  rayQueryInitializeEXT(query, sceneAcceleration, gl_RayFlagsTerminateOnFirstHitEXT, 0xffu, origin, 0.0, direction, tMax);
-  float through = 1.0;
-  while (rayQueryProceedEXT(query)) {
-    const uint triangle = hitTriangle(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
-                                      rayQueryGetIntersectionGeometryIndexEXT(query, false),
-                                      rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
-    through *= 1.0 - triangleCoverage(triangle, rayQueryGetIntersectionBarycentricsEXT(query, false));
-    if (through <= 0.0) {
-      rayQueryTerminateEXT(query);
-      return 0.0;
-    }
+#define DEFINE_TRANSMITTANCE(name, structure)                                                                             \
+  float name(vec3 origin, vec3 direction, float tMax) {                                                                   \
+    countRay();                                                                                                           \
+    rayQueryEXT query;                                                                                                    \
+    rayQueryInitializeEXT(query, structure, gl_RayFlagsTerminateOnFirstHitEXT, 0xffu, origin, 0.0, direction, tMax);      \
+    float through = 1.0;                                                                                                  \
+    while (rayQueryProceedEXT(query)) {                                                                                   \
+      const uint triangle = hitTriangle(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),                      \
+                                        rayQueryGetIntersectionGeometryIndexEXT(query, false),                            \
+                                        rayQueryGetIntersectionPrimitiveIndexEXT(query, false));                          \
+      through *= 1.0 - triangleCoverage(triangle, rayQueryGetIntersectionBarycentricsEXT(query, false));                  \
+      if (through <= 0.0) {                                                                                               \
+        rayQueryTerminateEXT(query);                                                                                      \
+        return 0.0;                                                                                                       \
+      }                                                                                                                   \
+    }                                                                                                                     \
+    return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT ? through : 0.0;        \
   }
-  return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT ? through : 0.0;
-}
+#endif
+
+#ifdef CAN_TRACE
+DEFINE_TRANSMITTANCE(traceTransmittance, sceneAcceleration)
+#ifdef NEED_PREVIOUS_ACCELERATION
+#ifdef SCENE_ANIMATED
+DEFINE_TRANSMITTANCE(traceTransmittancePrevious, scenePreviousAcceleration)
+#else
+#define traceTransmittancePrevious traceTransmittance
+#endif
+#endif
 #endif
 
 #endif

@@ -17,16 +17,36 @@ vec3 offsetOrigin(Surface s, vec3 direction) {
   return s.position + s.geometricNormal * (dot(s.geometricNormal, direction) < 0.0 ? -error : error);
 }
 
-// Transmittance of the segment from the surface to the light's point; either end is moved towards the other by its own error, so
-// that neither surface blocks itself.
-float traceVisibility(Surface s, LightSample light) {
-  const vec3 origin = offsetOrigin(s, light.direction);
-  const vec3 d = light.target - origin;
-  const vec3 largest = max(abs(light.target), abs(origin));
+// The segment from the surface to the light's point; either end is moved towards the other by its own error, so that neither
+// surface blocks itself. `extent` is in units of `way`; nothing is left of a segment when it isn't positive.
+struct ShadowSegment {
+  vec3 origin, way;
+  float extent;
+};
+
+ShadowSegment shadowSegment(Surface s, LightSample light) {
+  ShadowSegment r;
+  r.origin = offsetOrigin(s, light.direction);
+  r.way = light.target - r.origin;
+  const vec3 largest = max(abs(light.target), abs(r.origin));
   const float targetError = max(largest.x, max(largest.y, largest.z)) * (16.0 / 8388608.0) + intersectionError();
-  const float tMax = 1.0 - targetError * inversesqrt(dot(d, d));
-  return tMax > 0.0 ? traceTransmittance(origin, d, tMax) : 1.0;
+  r.extent = 1.0 - targetError * inversesqrt(dot(r.way, r.way));
+  return r;
 }
+
+// Transmittance of that segment.
+float traceVisibility(Surface s, LightSample light) {
+  const ShadowSegment r = shadowSegment(s, light);
+  return r.extent > 0.0 ? traceTransmittance(r.origin, r.way, r.extent) : 1.0;
+}
+
+#ifdef NEED_PREVIOUS_ACCELERATION
+// The same through last frame's scene; surface and light are then last frame's too.
+float traceVisibilityPrevious(Surface s, LightSample light) {
+  const ShadowSegment r = shadowSegment(s, light);
+  return r.extent > 0.0 ? traceTransmittancePrevious(r.origin, r.way, r.extent) : 1.0;
+}
+#endif
 #endif
 
 #endif

@@ -1,6 +1,7 @@
 // What both G-buffers write for a pixel.
 #include "gbuffer_jitter.glsl"
 #include "hit_surface.glsl"
+#include "previous.glsl"
 #ifdef SCENE_ENVIRONMENT
 #include "environment.glsl"
 #endif
@@ -23,7 +24,7 @@ void writePixel(uvec2 pixel, Hit hit, vec3 direction, uvec2 jitter) {
     const HitSurface s = surfaceAt(hit, camera.origin.xyz, direction, jitter);
     out_surface[index] = s.surface;
     imageStore(out_emission, ivec2(pixel), vec4(s.emission, 1.0));
-    before = cameraProject(previousCamera, s.position, frameSize);
+    before = cameraProject(previousCamera, previousPosition(hit, s.position), frameSize);
   }
   // Behind last frame's camera: nowhere on its picture.
   const vec2 motion = before.z > 0.0 ? before.xy - point : vec2(kInfinity);

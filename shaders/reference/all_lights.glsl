@@ -28,7 +28,7 @@ LightSample sampleBySolidAngle(Light light, SphericalTriangle t, vec2 u, vec3 po
   s.radiance = lit ? light.radiance : vec3(0.0);
 #ifdef SCENE_TEXTURED_LIGHTS
   if (lit && (light.kind & kLightTextured) != 0u) {
-    s.radiance *= emissionTexture(light.triangle, clamp(barycentricsAlong(light, position, s.direction), 0.0, 1.0));
+    s.radiance *= lightTexture(light, clamp(barycentricsAlong(light, position, s.direction), 0.0, 1.0));
   }
 #endif
   return s;

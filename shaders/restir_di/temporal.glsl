@@ -1,6 +1,7 @@
 // Temporal reuse: each pixel's reservoirs are merged with those that its surface had last frame, found by the motion vector.
 // Bitterli et al. 2020, section 4; the history counts at most `confidenceCap` fresh frames. The history's target is that of LAST
-// frame's surface and camera.
+// frame's surface, camera, lights and geometry.
+#define PREVIOUS_DOMAIN 1
 #include "random.glsl"
 #include "merge.glsl"
 

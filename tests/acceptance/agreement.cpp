@@ -2,6 +2,8 @@
 // runs long enough to resolve a bias of some hundredths of a percent. Prints a row a setting and, with --json, writes
 // the raw numbers.
 //   agreement --scene scenes/cornell.glb --size 256 --restarts 256 --frames 4
+//   agreement --scene scenes/cornell-moving.glb --animate --time 0.3 --time-step 0.1 --size 256 --restarts 256 --frames
+//   6
 #include <fmt/format.h>
 #include <weir/execute/executor.h>
 #include <weir/graph/compile.h>
@@ -41,20 +43,23 @@ class Laboratory {
   const gpu::Device& device() const { return device_; }
   const render::Stage& stage() const { return stage_; }
 
-  /// One sample a restart: the mean of its frames.
+  /// One sample a restart: the mean of its frames, or, where a clip moves the scene and no two frames show the same,
+  /// the last one, number words.frames - 1.
   image::RestartAccumulator run(const std::string& graph, const graph::Overrides& overrides, uint32_t restarts,
                                 uint32_t frames, uint32_t seed) {
     execute::Executor executor(
         device_, compiler_, registry_, scene_,
         graph::compileFile(words_.graphs + "/" + graph, overrides, registry_.catalog(), words_.size, words_.size),
         {.backend = backend_});
+    render::Player player(stage_);
     image::RestartAccumulator result(words_.tile);
+    const uint32_t first = stage_.playback ? words_.frames - frames : 0;
     for (uint32_t r = 0; r < restarts; ++r) {
       executor.resetHistory();
       render::FrameMean mean;
-      for (uint32_t f = 0; f < frames; ++f) {
-        executor.frame({stage_.camera, f, render::restartSeed(seed, r), false});
-        mean.add(executor.read("radiance"));
+      for (uint32_t f = first; f < first + frames; ++f) {
+        executor.frame(player.frame(f, render::restartSeed(seed, r)));
+        if (!stage_.playback || f + 1 == first + frames) mean.add(executor.read("radiance"));
       }
       result.add(mean.mean());
     }
@@ -90,6 +95,8 @@ int run(const Words& words) {
             {"scene", laboratory.stage().sceneLabel},
             {"lights", laboratory.stage().lightsLabel},
             {"camera", laboratory.stage().cameraLabel},
+            {"animation", render::animationLabel(laboratory.stage(), words.frames - 1, words.frames - 1)},
+            {"time_step", laboratory.stage().playback ? laboratory.stage().playback->step : 0.0},
             {"size", words.size},
             {"restarts", words.restarts},
             {"frames", words.frames},
@@ -142,6 +149,10 @@ int main(int argc, char** argv) {
   app.add_option("--lights", words.stage.lights);
   app.add_option("--environment", words.stage.environment);
   app.add_option("--camera", words.stage.camera);
+  app.add_flag("--animate", words.stage.animate, "Compare the last frame of a scene that a clip moves");
+  app.add_option("--clip", words.stage.clip);
+  app.add_option("--time", words.stage.time);
+  app.add_option("--time-step", words.stage.timeStep);
   app.add_option("--size", words.size);
   app.add_option("--restarts", words.restarts);
   app.add_option("--frames", words.frames);

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <ctime>
 #include <random>
 
 namespace weir::scene::test {
@@ -204,6 +206,25 @@ TEST(Prepare, PunctualPowers) {
 TEST(Prepare, FlatNormalsWhereTheFileHasNone) {
   const PreparedScene p = prepareScene(load(GltfText::triangle().text()));
   for (const auto& v : p.vertices) EXPECT_EQ(unpackNormal(v.normal), glm::vec3(0, 0, 1));
+}
+
+// Each triangle around the hub has a normal of its own: time must not grow with the square of their number.
+TEST(Prepare, AFanOfManyTrianglesWithoutNormals) {
+  constexpr uint32_t kTriangles = 300'000;
+  Primitive p;
+  p.positions.emplace_back(0, 0, 0);
+  for (uint32_t i = 0; i <= kTriangles; ++i) {
+    const double turn = 6.0 * i / kTriangles;
+    p.positions.emplace_back(std::cos(turn), std::sin(turn), std::sin(1000.0 * turn));
+    if (i > 0) p.indices.insert(p.indices.end(), {0, i, i + 1});
+  }
+  Scene scene;
+  scene.meshes = {{"fan", {p}}};
+  scene.instances = {{0, -1, glm::mat4(1.0f)}};
+  const auto start = std::clock();
+  const PreparedScene prepared = prepareScene(scene);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10.0);  // the square would take minutes
+  EXPECT_EQ(prepared.triangles.size() + prepared.droppedTriangles, kTriangles);
 }
 
 TEST(EmissionMap, MeansAndBlackRegions) {

@@ -42,6 +42,8 @@ struct PassTest::Machine {
   Registry registry;
   shader::Compiler compiler;
   scene::PreparedScene prepared;
+  std::unique_ptr<scene::StateMaker> states;  // only with a clip
+  scene::SceneState state;
   std::unique_ptr<scene::SceneGpu> scene;
   std::unique_ptr<execute::Executor> executor;
 
@@ -67,6 +69,14 @@ PassTest& PassTest::scene(scene::Scene scene) {
 }
 PassTest& PassTest::limits(const scene::PrepareLimits& limits) {
   limits_ = limits;
+  return *this;
+}
+PassTest& PassTest::clip(const std::string& name) {
+  clip_ = name;
+  return *this;
+}
+PassTest& PassTest::at(double seconds) {
+  seconds_ = seconds;
   return *this;
 }
 PassTest& PassTest::plugin(const std::string& name, std::vector<WeirPassEntry> passes,
@@ -169,7 +179,8 @@ void PassTest::build() {
   graph::CompiledGraph compiled = graph::compile(description, m.registry.catalog(), width_, height_, diagnostics);
   if (!diagnostics.empty()) throw graph::GraphError(diagnostics);
 
-  m.prepared = scene::prepareScene(scene_, limits_);
+  m.prepared = scene::prepareScene(scene_, limits_, clip_.empty() ? nullptr : &scene::chooseClip(scene_, clip_));
+  if (!clip_.empty()) m.states = std::make_unique<scene::StateMaker>(scene_, m.prepared);
   const bool traces = device->capabilities().accelerationStructure;
   m.scene = std::make_unique<scene::SceneGpu>(*device, scene_, m.prepared, traces);
   execute::ExecutorOptions options;
@@ -204,6 +215,10 @@ std::vector<std::byte> PassTest::outputBytes(const std::string& port) {
 
 void PassTest::run(uint32_t frames) {
   build();
+  if (machine_->states) {
+    machine_->state = machine_->states->at(scene::evaluate(scene_, scene::chooseClip(scene_, clip_), seconds_));
+    frame_.state = &machine_->state;
+  }
   for (uint32_t i = 0; i < frames; ++i) {
     machine_->executor->frame(frame_);
     ++frame_.index;

@@ -30,6 +30,7 @@ class PassTest {
   PassTest& size(uint32_t width, uint32_t height);
   PassTest& scene(scene::Scene scene);                   ///< default: an empty one
   PassTest& limits(const scene::PrepareLimits& limits);  ///< which meshes stay instances; default: prepareScene's own
+  PassTest& clip(const std::string& name);               ///< of the scene, which that clip then moves
   /// Passes of the test's own, as a plugin would bring them.
   PassTest& plugin(const std::string& name, std::vector<WeirPassEntry> passes, const std::string& shaderFolder);
   PassTest& param(const std::string& name, const std::string& value);  ///< as after --set
@@ -46,6 +47,7 @@ class PassTest {
     return inputBytes(port, std::as_bytes(std::span(values)));
   }
   PassTest& camera(const scene::Camera& camera);
+  PassTest& at(double seconds);     ///< where in the clip the next frames are; before the first one: 0
   PassTest& frame(uint32_t index);  ///< number of the next frame; run() counts on from it
   PassTest& seed(uint32_t seed);
   void resetHistory();
@@ -76,6 +78,8 @@ class PassTest {
   uint32_t width_ = 64, height_ = 64;
   scene::Scene scene_;
   scene::PrepareLimits limits_;
+  std::string clip_;
+  double seconds_ = 0.0;
   struct OwnPlugin {
     std::string name, shaders;
     std::vector<WeirPassEntry> passes;

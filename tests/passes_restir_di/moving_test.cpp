@@ -1,0 +1,105 @@
+// Temporal reuse while things move: one frame of restir_di with the unbiased settings, after frames in which a block
+// turned, a skinned column bent, a ball changed its shape and the lamp moved and grew, against brute force of the same
+// moment. The history's target must be evaluated with everything as it was, and its weights follow the lamp's area.
+#include <gtest/gtest.h>
+#include <weir/graph/compile.h>
+#include <weir/image/statistics.h>
+#include <weir/pass/registry.h>
+#include <weir/render/render.h>
+#include <weir/trace/acceleration.h>
+
+#include <filesystem>
+
+#include "support/device.h"
+#include "support/pass_test.h"
+
+namespace weir::test {
+namespace {
+
+constexpr uint32_t kSide = 64, kTile = 16, kFirst = 3, kFrames = 5, kLast = kFirst + kFrames - 1;
+
+class Laboratory {
+ public:
+  explicit Laboratory(const std::string& clip)
+      : device_(validatedDevice()),
+        guard_(*device_),
+        registry_({std::filesystem::path(WEIR_BINARY_DIR) / "bin"}),
+        stage_(render::makeStage({.scene = sourcePath("scenes/cornell-moving.glb"),
+                                  .animate = true,
+                                  .clip = clip,
+                                  .time = 0.1,
+                                  .timeStep = 0.1},
+                                 1.0f)),
+        scene_(*device_, stage_.scene, stage_.prepared, device_->capabilities().accelerationStructure) {}
+
+  /// One picture a restart: the last of the frames from `first` on.
+  image::RestartAccumulator run(const std::string& graph, const graph::Overrides& overrides, uint32_t restarts,
+                                uint32_t first, trace::Backend backend, uint32_t seed) {
+    execute::Executor executor(*device_, compiler_, registry_, scene_,
+                               graph::compileFile(sourcePath(graph), overrides, registry_.catalog(), kSide, kSide),
+                               {.backend = backend});
+    render::Player player(stage_);
+    image::RestartAccumulator result(kTile);
+    for (uint32_t r = 0; r < restarts; ++r) {
+      executor.resetHistory();
+      for (uint32_t f = first; f <= kLast; ++f) executor.frame(player.frame(f, render::restartSeed(seed, r)));
+      result.add(executor.read("radiance"));
+    }
+    return result;
+  }
+  trace::Backend backend(const std::string& name) const { return trace::chooseBackend(name, *device_); }
+
+ private:
+  std::shared_ptr<gpu::Device> device_;
+  ExpectNoValidationMessages guard_;
+  Registry registry_;
+  render::Stage stage_;
+  scene::SceneGpu scene_;
+  shader::Compiler compiler_;
+};
+
+/// Tiles within Student's bound and the whole picture's bias within its interval; chance of a false alarm of one call
+/// 1e-3 for its tiles, and as much for the mean.
+void expectUnbiased(const std::string& clip, const std::vector<std::string>& disable, const std::string& backend) {
+  SCOPED_TRACE(clip + " " + backend);
+  Laboratory laboratory(clip);
+  const trace::Backend how = laboratory.backend(backend);
+  const image::RestartAccumulator reference = laboratory.run(
+      "graphs/all_lights.json", {.set = {"direct.samples=4"}, .enable = {}, .disable = {}}, 24, kLast, how, 1000);
+  const image::Picture truth = reference.mean(), truthError = reference.standardError();
+  const graph::Overrides overrides{
+      .set = {"initial.candidates=4", "temporal.visibilityRays=true", "spatial.visibilityRays=true",
+              "temporal.confidenceCap=8", "temporal.normalThreshold=40", "spatial.radius=12"},
+      .enable = {},
+      .disable = disable};
+  const image::RestartAccumulator measured = laboratory.run("graphs/restir_di.json", overrides, 64, kFirst, how, 7);
+  EXPECT_EQ(measured.nonFinite(), 0u);
+  const image::TileTest t = image::tileTest(measured.tiles(), truth, &truthError, {.alpha = 1e-3});
+  EXPECT_TRUE(t.passed) << "worst |t| " << t.worstT << ", bound " << t.bound << ", tile " << t.worst << ": "
+                        << t.tiles[t.worst].relativeBias;
+  std::printf("%s: worst |t| %.2f of bound %.2f, bias %+.3f %% (99 %%: %+.3f ... %+.3f)\n", clip.c_str(), t.worstT,
+              t.bound, 100 * t.relativeBias, 100 * t.intervalLow, 100 * t.intervalHigh);
+  EXPECT_LE(t.intervalLow, 0.0);
+  EXPECT_GE(t.intervalHigh, 0.0);
+  // What could have been found: a bias of two percent in the picture.
+  EXPECT_LT(t.intervalHigh - t.intervalLow, 0.02);
+}
+
+TEST(RestirMoving, Everything) {
+  expectUnbiased("everything", {}, "auto");
+}
+TEST(RestirMoving, EverythingByQueries) {
+  expectUnbiased("everything", {"spatial"}, "query");
+}
+TEST(RestirMoving, Block) {
+  expectUnbiased("block", {"spatial"}, "auto");
+}
+TEST(RestirMoving, Column) {
+  expectUnbiased("column", {"spatial"}, "auto");
+}
+TEST(RestirMoving, Lamp) {
+  expectUnbiased("lamp", {"spatial"}, "auto");
+}
+
+}  // namespace
+}  // namespace weir::test
