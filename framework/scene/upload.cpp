@@ -11,8 +11,6 @@ namespace {
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr uint32_t kMostSets = 64;  // executors over one scene at a time
 
-}
-
 float longestSide(const PreparedScene& prepared) {
   std::vector<float> ofRange;
   for (const TriangleRange& range : prepared.ranges) {
