@@ -14,7 +14,7 @@ mat3 basisAround(vec3 n) {
 
 // With which probability the specular lobe is drawn from: about its share of what is reflected.
 float specularShare(Surface s) {
-  const vec3 f = schlick(s.f0, max(dot(s.normal, s.view), 0.0));
+  const vec3 f = schlick(s, max(dot(s.normal, s.view), 0.0));
   const float specular = luminance(f), diffuse = luminance((1.0 - f) * s.diffuse);
   return specular + diffuse > 0.0 ? specular / (specular + diffuse) : 0.0;
 }

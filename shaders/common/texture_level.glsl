@@ -1,7 +1,7 @@
 // Textures as a camera's pixel sees them: at the level whose texels are as large as what the pixel covers (SCENE_MIPMAPS), else at
 // level 0. Two ways to that level:
 //   ray cones          one cone a pixel, as wide as the pixel; Akenine-Möller et al. 2021, "Improved Shader and Texture Level of Detail
-//                      Using Ray Cones", JCGT 10(1), eq. 3: isotropic, by the mean density of texels on the triangle
+//                      Using Ray Cones", JCGT 10(1): isotropic, by the mean density of texels on the triangle
 //   derivatives        (LEVEL_FROM_DERIVATIVES) of the barycentrics from pixel to pixel, exact, as a rasteriser's; the longer axis of the
 //                      pixel in the texture counts
 // On a texture that a triangle doesn't stretch, and in the middle of the picture, both are the same number.

@@ -185,5 +185,36 @@ TEST_F(Program, StatisticsAreComplete) {
   EXPECT_GT(j.at("rays").get<uint64_t>(), 32u * 24);
 }
 
+TEST_F(Program, EnvironmentsLightTheSceneAndAreNamed) {
+  const std::string sky = sourcePath("scenes/sky.hdr"), with = "--environment " + sky + " ";
+  const image::Picture dark = radiance(allLights, cornell, "", "dark.exr"),
+                       lit = radiance(allLights, cornell, with, "lit.exr"),
+                       twice = radiance(allLights, cornell, with + "--environment-scale 2", "twice.exr"),
+                       turned = radiance(allLights, cornell, with + "--environment-rotation 90", "turned.exr");
+  EXPECT_TRUE(has(lit.attributes.at("weir.lights"), "scene, environment sky.hdr "));
+  EXPECT_TRUE(has(twice.attributes.at("weir.lights"), " times 2"));
+  EXPECT_TRUE(has(turned.attributes.at("weir.lights"), " turned 90 degrees"));
+  EXPECT_GT(meanOf(lit), meanOf(dark));
+  // Linear, up to the noise of a sample a pixel.
+  EXPECT_NEAR((meanOf(twice) - meanOf(dark)) / (meanOf(lit) - meanOf(dark)), 2.0, 0.4);
+  EXPECT_FALSE(same(lit, turned));
+  const Ran refused = weir("compare " + file("lit.exr") + " " + file("twice.exr"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(has(refused.err, "weir.lights")) << refused.err;
+}
+
+TEST_F(Program, StatisticsTellOfTheEnvironment) {
+  const Ran r = render(restir, cornell,
+                       "--environment " + sourcePath("scenes/sky.hdr") + " --stats " + file("s.json") +
+                           " --out radiance=" + file("a.exr"));
+  ASSERT_EQ(r.status, 0) << r.err;
+  const Json j = Json::parse(read(file("s.json")));
+  ASSERT_TRUE(j.contains("environment"));
+  EXPECT_EQ(j["environment"]["size"], Json({64, 32}));
+  EXPECT_GT(j["environment"]["share"], 0.0);
+  EXPECT_LT(j["environment"]["share"], 1.0);
+  EXPECT_GT(j["environment"]["integral"], 0.0);
+}
+
 }  // namespace
 }  // namespace weir::test

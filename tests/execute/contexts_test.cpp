@@ -138,7 +138,8 @@ class Needs final : public Pass {
 };
 
 /// The prelude of pass `it`.
-std::string preludeOf(const WeirPassEntry& entry, const std::string& inputs, KernelKind kind = KernelKind::Compute) {
+std::string preludeOf(const WeirPassEntry& entry, const std::string& inputs, KernelKind kind = KernelKind::Compute,
+                      const scene::SceneTraits& traits = {}) {
   Registry registry;
   const WeirPassEntry entries[] = {entry, passEntry<Feeder>("Feeder")};
   registry.add("own", entries);
@@ -157,6 +158,7 @@ std::string preludeOf(const WeirPassEntry& entry, const std::string& inputs, Ker
     interface.pass = &pass;
     interface.scratch.push_back({"spare", perPixel<Word>(), 3});
     interface.textures.emplace_back("lut", true);
+    interface.traits = traits;
     return execute::kernelSource(interface, kind, "body.glsl");
   }
   return "no such pass";
@@ -209,6 +211,20 @@ TEST(Prelude, LeavesOutWhatIsNotDeclared) {
     for (const char* words : c.there) EXPECT_TRUE(holds(s, words)) << c.entry.name << ": " << words;
     for (const char* words : c.absent) EXPECT_FALSE(holds(s, words)) << c.entry.name << ": " << words;
   }
+}
+
+TEST(Prelude, EnvironmentsAreDeclaredOnlyWhereASceneHasOne) {
+  scene::SceneTraits sky;
+  sky.environment = true;
+  const auto of = [](const WeirPassEntry& entry, const scene::SceneTraits& traits) {
+    return preludeOf(entry, "", KernelKind::Compute, traits);
+  };
+  for (const WeirPassEntry& entry :
+       {passEntry<Needs<Need::SceneEnvironment>>("E"), passEntry<Needs<Need::SceneLights>>("L")}) {
+    EXPECT_TRUE(holds(of(entry, sky), "sceneEnvironmentMap") && holds(of(entry, sky), "#define SCENE_ENVIRONMENT 1"));
+    EXPECT_FALSE(holds(of(entry, {}), "nvironment")) << entry.name;
+  }
+  EXPECT_FALSE(holds(of(passEntry<Needs<Need::SceneGeometry>>("G"), sky), "sceneEnvironmentMap"));
 }
 
 TEST(Prelude, OnlyRayKernelsCanTrace) {

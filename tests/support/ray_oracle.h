@@ -31,7 +31,7 @@ struct OracleSurface {
 /// How the level of a texture follows from what a pixel covers of it; Zero: it doesn't.
 enum class LevelRule : uint8_t {
   Zero,
-  Cone,         ///< Akenine-Möller et al. 2021, eq. 3, with the root of the pixel's solid angle as the cone's
+  Cone,         ///< Akenine-Möller et al. 2021, with the root of the pixel's solid angle as the cone's
   Derivatives,  ///< the longer half axis of the pixel's circle in the texture
 };
 
