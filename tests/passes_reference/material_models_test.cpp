@@ -21,28 +21,26 @@ scene::Scene still(const scene::Material& material) {
 // The same reflection written in both models: what is left is how colours are packed. Acceptance asks for 0.5 %.
 TEST(MaterialModels, SpecularGlossinessAndMetallicRoughnessAreOneMaterial) {
   const glm::vec3 c(0.8f, 0.5f, 0.2f);
-  for (const float metallic : {0.0f, 0.5f, 1.0f}) {
-    for (const float roughness : {0.3f, 0.8f}) {
-      SCOPED_TRACE(testing::Message() << "metallic " << metallic << ", roughness " << roughness);
-      scene::Material mr, sg;
-      mr.baseColor = glm::vec4(c, 1);
-      mr.metallic = metallic;
-      mr.roughness = roughness;
-      sg.model = scene::MaterialModel::SpecularGlossiness;
-      sg.specularColor = glm::mix(glm::vec3(0.04f), c, metallic);
-      const float most = std::max({sg.specularColor.r, sg.specularColor.g, sg.specularColor.b});
-      sg.baseColor = glm::vec4(c * (1 - metallic) / (1 - most), 1);
-      sg.glossiness = 1 - roughness;
-      const Picture a = render(still(mr), kAbove, 3), b = render(still(sg), kAbove, 3);
-      glm::dvec3 sumA(0), sumB(0);
-      for (size_t i = 0; i < a.color.size(); ++i) {
-        sumA += glm::dvec3(a.color[i]);
-        sumB += glm::dvec3(b.color[i]);
-      }
-      for (int k = 0; k < 3; ++k) {
-        EXPECT_GT(sumA[k], 1.0);
-        EXPECT_NEAR(sumB[k] / sumA[k], 1.0, 5e-3);
-      }
+  for (const auto& [metallic, roughness] : {std::pair(0.0f, 0.3f), {0.5f, 0.8f}, {1.0f, 0.4f}}) {
+    SCOPED_TRACE(testing::Message() << "metallic " << metallic << ", roughness " << roughness);
+    scene::Material mr, sg;
+    mr.baseColor = glm::vec4(c, 1);
+    mr.metallic = metallic;
+    mr.roughness = roughness;
+    sg.model = scene::MaterialModel::SpecularGlossiness;
+    sg.specularColor = glm::mix(glm::vec3(0.04f), c, metallic);
+    const float most = std::max({sg.specularColor.r, sg.specularColor.g, sg.specularColor.b});
+    sg.baseColor = glm::vec4(c * (1 - metallic) / (1 - most), 1);
+    sg.glossiness = 1 - roughness;
+    const Picture a = render(still(mr), kAbove, 3), b = render(still(sg), kAbove, 3);
+    glm::dvec3 sumA(0), sumB(0);
+    for (size_t i = 0; i < a.color.size(); ++i) {
+      sumA += glm::dvec3(a.color[i]);
+      sumB += glm::dvec3(b.color[i]);
+    }
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_GT(sumA[k], 1.0);
+      EXPECT_NEAR(sumB[k] / sumA[k], 1.0, 5e-3);
     }
   }
 }
