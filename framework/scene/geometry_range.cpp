@@ -44,7 +44,9 @@ void GeometryRange::addExtras(const Primitive& primitive, uint32_t i) {
   if (scene_.traits.vertexColors) {
     const glm::vec4 c = primitive.colors.empty() ? glm::vec4(1.0f) : primitive.colors[i];
     const auto pack = [](float low, float high) {
-      const auto code = [](float v) { return static_cast<uint32_t>(std::clamp(v, 0.0f, 1.0f) * 65535.0f + 0.5f); };
+      const auto code = [](float v) {
+        return static_cast<uint32_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 65535.0f));
+      };
       return code(low) | (code(high) << 16);
     };
     colors_.push_back({pack(c.r, c.g), pack(c.b, c.a)});

@@ -57,8 +57,11 @@ Level halve(uint32_t width, uint32_t height, const Texel& texel) {
   return result;
 }
 
+/// Truncation after adding this rounds what isn't negative to the nearest; lround() takes longer than all else here.
+constexpr float kToNearest = 0.5f;
+
 uint8_t toCode(float value) {
-  return static_cast<uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
+  return static_cast<uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255.0f + kToNearest);
 }
 
 /// Linear to the nearest sRGB code (IEC 61966-2-1), to 1/40 of a code step.
@@ -67,11 +70,12 @@ uint8_t toSrgbCode(float linear) {
     std::vector<uint8_t> t(65536);
     for (size_t i = 0; i < t.size(); ++i) {
       const double l = static_cast<double>(i) / 65535.0;
-      t[i] = static_cast<uint8_t>((l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1.0 / 2.4) - 0.055) * 255.0 + 0.5);
+      t[i] = static_cast<uint8_t>((l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1.0 / 2.4) - 0.055) * 255.0 +
+                                  double{kToNearest});
     }
     return t;
   }();
-  return table[static_cast<size_t>(std::clamp(linear, 0.0f, 1.0f) * 65535.0f + 0.5f)];
+  return table[static_cast<size_t>(std::clamp(linear, 0.0f, 1.0f) * 65535.0f + kToNearest)];
 }
 
 void store(const Level& level, const MipContent& content, std::vector<uint8_t>& to) {

@@ -48,11 +48,7 @@ glm::dquat unit(const glm::dquat& q) {
 
 /// Appendix C.4: the shorter way round, and linear where the angle vanishes.
 glm::dquat slerp(const glm::dquat& a, glm::dquat b, double t) {
-  double cosine = glm::dot(a, b);
-  if (cosine < 0.0) {
-    b = -b;
-    cosine = -cosine;
-  }
+  if (glm::dot(a, b) < 0.0) b = -b;
   // The arc tangent keeps its digits where the arc cosine loses them.
   const glm::dquat sum = a + b, difference = a - b;
   const double angle = 2.0 * std::atan2(std::sqrt(glm::dot(difference, difference)), std::sqrt(glm::dot(sum, sum)));
