@@ -1,5 +1,6 @@
 // Initial candidates by streaming RIS (Talbot et al. 2005; Bitterli et al. 2020, algorithm 3): M lights picked by power, one kept in
-// proportion to p̂/p. The environment is also found by directions that the BSDF prefers. Several reservoirs of a pixel share the candidates and choose from them independently.
+// proportion to p̂/p. The environment is also found by directions that the BSDF prefers. Several reservoirs of a pixel share the
+// candidates and choose from them independently.
 #include "random.glsl"
 #include "reservoir.glsl"
 #include "spherical_triangle.glsl"
