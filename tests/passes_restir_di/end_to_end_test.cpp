@@ -102,7 +102,7 @@ TEST(RestirEndToEnd, ThousandPoints) {
 
 // The lamp and the sky that comes in at the open front.
 TEST(RestirEndToEnd, CornellBoxUnderTheSky) {
-  expectUnbiased("scenes/cornell.glb", 16, "3", "16", "scenes/sky.hdr", 0.05);
+  expectUnbiased("scenes/cornell.glb", 24, "4", "32", "scenes/sky.hdr", 0.06);
 }
 
 }  // namespace

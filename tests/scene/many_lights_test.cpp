@@ -1,8 +1,8 @@
 // A mesh of more than a million emissive triangles: prepared in seconds, every triangle a light with its share.
 #include <sys/resource.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "scene_support.h"
 #include "support/small_scenes.h"
@@ -39,14 +39,16 @@ Scene shiningSheet(uint32_t side) {
 TEST(ManyLights, AMillionEmissiveTriangles) {
   constexpr uint32_t kLights = 1'201'250;  // 2 · 775²
   const Scene scene = shiningSheet(775);
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // processor time: what else runs on the machine doesn't matter
   const PreparedScene p = prepareScene(scene);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   RecordProperty("seconds", std::to_string(seconds));
   RecordProperty("peak_mebibytes", std::to_string(usage.ru_maxrss / 1024));
-  std::cout << "prepared in " << seconds << " s, peak of the process " << usage.ru_maxrss / 1024 << " MiB\n";
+  std::cout << "prepared in " << seconds << " s of processor time, peak of the process " << usage.ru_maxrss / 1024
+            << " MiB\n";
+  EXPECT_LT(seconds, 30.0);
   EXPECT_LT(usage.ru_maxrss / 1024, 1024) << "MiB";
 
   ASSERT_EQ(p.lights.size(), kLights);
