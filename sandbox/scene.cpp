@@ -40,6 +40,9 @@ ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
                        {"eye", vec(camera.eye)},
                        {"forward", vec(camera.forward)},
                        {"vertical_fov_degrees", glm::degrees(camera.verticalFov)}});
+  ordered_json clips = ordered_json::array();
+  for (const Clip& clip : scene.clips)
+    clips.push_back({{"name", clip.name}, {"seconds", clip.duration}, {"channels", clip.channels.size()}});
   ordered_json j;
   j["scene"] = scene.path;
   j["triangles"] = {{"stored", s.storedTriangles},
@@ -65,6 +68,8 @@ ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
       {"all", s.textures}, {"images", s.images}, {"used", prepared.textures.size()}, {"transformed", s.uvTransforms}};
   j["memory"] = memory(scene, prepared);
   j["animations"] = s.animations;
+  j["clips"] = std::move(clips);
+  j["skins"] = scene.skins.size();
   if (s.bounds.empty)
     j["bounds"] = nullptr;
   else
@@ -91,7 +96,7 @@ ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
 /// One line a property, names padded; the same content as the JSON.
 void printText(const ordered_json& j) {
   for (const auto& [key, value] : j.items()) {
-    if (key == "warnings" || key == "cameras") {
+    if (key == "warnings" || key == "cameras" || key == "clips") {
       fmt::print("{:<11} {}\n", key, value.empty() ? "none" : "");
       for (const auto& entry : value) fmt::print("  {}\n", entry.is_string() ? entry.get<std::string>() : entry.dump());
     } else if (value.is_object()) {

@@ -90,6 +90,12 @@ def one(task):
     return row
 
 
+def as_text(head, rows):
+    """JSON with a line for each file."""
+    lines = ",\n".join("  " + json.dumps(row) for row in rows)
+    return json.dumps(head)[:-1] + ', "files": [\n' + lines + "\n]}\n"
+
+
 def table(rows):
     """By where the files come from: how many, and how they ended."""
     lines = ["| from | files | scenes | refused | failed | most processor time | most memory |",
@@ -133,8 +139,8 @@ def main():
                 failed += 1
                 print(f"FAILED {row['file']}: weir {part}: {row[part]['problem']}: {row[part]['message']}")
     if options.json:
-        body = {"limits": {"cpu_seconds": SECONDS, "mebibytes": MEBIBYTES}, "sanitizers": sanitized, "files": rows}
-        options.json.write_text(json.dumps(body, indent=1) + "\n")
+        options.json.write_text(as_text({"limits": {"cpu_seconds": SECONDS, "mebibytes": MEBIBYTES},
+                                         "sanitizers": sanitized}, rows))
     print(table(rows))
     return 1 if failed or not rows else 0
 

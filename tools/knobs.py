@@ -19,6 +19,7 @@ KNOBS = [
     ("initial.samples", "1", "2"),
     ("initial.uniformShare", "0.1", "0.5"),
     ("initial.triangles", "solidAngle", "area"),
+    ("initial.lobeShare", "0.25", "0"),
     ("initial.visibility", "true", "false"),
     ("temporal.confidenceCap", "20", "4"),
     ("temporal.mis", "pairwise", "biased"),

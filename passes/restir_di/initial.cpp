@@ -22,8 +22,12 @@ void Initial::describe(PassDescription& d) {
       .specialises()
       .doc(
           "How a point on an emissive triangle is drawn: by area, or by solid angle where it is close for its size (no "
-          "fireflies "
-          "close to it)");
+          "fireflies close to it)");
+  d.param("lobeShare", 0.25f)
+      .range(0, 0.9f)
+      .doc(
+          "On surfaces with α below 0.25: share of the points on emissive triangles that are looked for along the "
+          "specular lobe (no fireflies in reflections)");
   d.param("visibility", true)
       .specialises()
       .doc("Shoot a shadow ray to each chosen sample: hidden ones are not passed on");

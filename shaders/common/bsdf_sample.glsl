@@ -19,14 +19,10 @@ float specularShare(Surface s) {
   return specular + diffuse > 0.0 ? specular / (specular + diffuse) : 0.0;
 }
 
-// Unit direction from three uniform numbers. It may lie below the surface, where bsdfCos() is zero.
-vec3 sampleBsdf(Surface s, vec3 u) {
+// Unit direction by the specular lobe alone. It may lie below the surface, where bsdfCos() is zero.
+vec3 sampleSpecular(Surface s, vec2 u) {
   const mat3 world = basisAround(s.normal);
   const float angle = 2.0 * kPi * u.y;
-  if (!(u.z < specularShare(s))) {
-    const float r = sqrt(u.x);
-    return normalize(world * vec3(r * cos(angle), r * sin(angle), sqrt(1.0 - u.x)));
-  }
   const vec3 view = s.view * world;
   const vec3 v = normalize(vec3(s.alpha * view.xy, max(view.z, 0.0)));
   const float across = dot(v.xy, v.xy);
@@ -38,16 +34,28 @@ vec3 sampleBsdf(Surface s, vec3 u) {
   return normalize(2.0 * dot(s.view, h) * h - s.view);
 }
 
+// Density of sampleSpecular() per steradian: G1(v) D / (4 n·v).
+float specularDensity(Surface s, vec3 l) {
+  const float nv = max(dot(s.normal, s.view), 0.0), a2 = s.alpha * s.alpha;
+  const vec3 sum = l + s.view;
+  if (!(dot(sum, sum) > 0.0)) return 0.0;
+  return ggxD(s.normal, normalize(sum), s.alpha) / (2.0 * (nv + sqrt(a2 + (1.0 - a2) * nv * nv)));
+}
+
+// Unit direction from three uniform numbers. It may lie below the surface, where bsdfCos() is zero.
+vec3 sampleBsdf(Surface s, vec3 u) {
+  if (u.z < specularShare(s)) return sampleSpecular(s, u.xy);
+  const float r = sqrt(u.x), angle = 2.0 * kPi * u.y;
+  return normalize(basisAround(s.normal) * vec3(r * cos(angle), r * sin(angle), sqrt(1.0 - u.x)));
+}
+
 // Density of sampleBsdf() per steradian.
 float bsdfDensity(Surface s, vec3 l) {
-  const float share = specularShare(s), nv = max(dot(s.normal, s.view), 0.0), a2 = s.alpha * s.alpha;
-  const vec3 sum = l + s.view;
-  float specular = 0.0;
-  if (dot(sum, sum) > 0.0) {
-    // G1(v) D / (4 n·v)
-    specular = ggxD(s.normal, normalize(sum), s.alpha) / (2.0 * (nv + sqrt(a2 + (1.0 - a2) * nv * nv)));
-  }
-  return mix(max(dot(s.normal, l), 0.0) / kPi, specular, share);
+  return mix(max(dot(s.normal, l), 0.0) / kPi, specularDensity(s, l), specularShare(s));
 }
+
+// Below this α the specular lobe is so narrow that points on lights must be looked for along it: its peak is 1 / (π α²).
+const float kGlossyAlpha = 0.25;
+bool isGlossy(Surface s) { return s.alpha < kGlossyAlpha; }
 
 #endif

@@ -138,6 +138,14 @@ vec2 barycentricsAlong(Light light, vec3 position, vec3 direction) {
   return vec2(dot(normal, cross(d, light.b)), dot(normal, cross(light.a, d))) / dot(normal, normal);
 }
 
+// Whether a ray from `position` meets the triangle itself, whichever side; `barycentrics` of where it does.
+bool meetsTriangle(Light light, vec3 position, vec3 direction, out vec2 barycentrics) {
+  const vec3 normal = cross(light.a, light.b);
+  barycentrics = barycentricsAlong(light, position, direction);
+  return dot(normal, light.position - position) * dot(normal, direction) > 0.0 &&
+         all(greaterThanEqual(barycentrics, vec2(0.0))) && barycentrics.x + barycentrics.y <= 1.0;
+}
+
 // The place whose placeOnTriangle() lies at these barycentrics, to within its 16 bits a side.
 uint placeAt(vec2 barycentrics) {
   const vec2 b = clamp(barycentrics, 0.0, 1.0);

@@ -2,9 +2,10 @@
 // level 0. Two ways to that level:
 //   ray cones          one cone a pixel, as wide as the pixel; Akenine-Möller et al. 2021, "Improved Shader and Texture Level of Detail
 //                      Using Ray Cones", JCGT 10(1): isotropic, by the mean density of texels on the triangle
-//   derivatives        (LEVEL_FROM_DERIVATIVES) of the barycentrics from pixel to pixel, exact, as a rasteriser's; the longer axis of the
-//                      pixel in the texture counts
-// On a texture that a triangle doesn't stretch, and in the middle of the picture, both are the same number.
+//   derivatives        (LEVEL_FROM_DERIVATIVES) of the barycentrics from pixel to pixel, exact, as a rasteriser's: the area of the pixel in
+//                      the texture, made longer by the tilt of the surface
+// Both are the same number up to the curvature of a pixel's edges: a pixel's area in the texture is its solid angle times distance
+// squared over |n·d|, times the density of texels. Neither sees along which axis a triangle stretches its texture.
 #ifndef WEIR_TEXTURE_LEVEL
 #define WEIR_TEXTURE_LEVEL
 
@@ -22,6 +23,7 @@ struct Corners {
 // Change of the barycentrics of vertices 1 and 2 from a pixel to the next, along the row and along the column.
 struct Footprint {
   vec2 perX, perY;
+  float tilt;  // log2 of how much longer than wide a cone is on the triangle
 };
 
 // Barycentrics are ratios of functions that are linear in the ray's direction (Möller and Trumbore 1997), and so is the direction in
@@ -34,6 +36,7 @@ Footprint footprintOf(Corners c, Hit hit, vec3 origin, vec3 direction) {
   Footprint f;
   f.perX = (vec2(dot(dx, above1), dot(dx, above2)) - hit.barycentrics * dot(dx, below)) / determinant;
   f.perY = (vec2(dot(dy, above1), dot(dy, above2)) - hit.barycentrics * dot(dy, below)) / determinant;
+  f.tilt = -log2(abs(dot(direction, below)) / length(below));
   return f;
 }
 
@@ -41,10 +44,8 @@ float levelOf(Footprint f, int texture, vec2 edge1, vec2 edge2) {
   const vec2 size = vec2(textureSize(sceneTextures[nonuniformEXT(texture)], 0));
   const vec2 a = edgeIn(texture, edge1) * size, b = edgeIn(texture, edge2) * size;
   const vec2 x = f.perX.x * a + f.perX.y * b, y = f.perY.x * a + f.perY.y * b;
-  // The larger eigenvalue of J Jᵀ is the squared half axis of the circle about the pixel, seen in the texture.
-  const float xx = dot(x, x), yy = dot(y, y), xy = dot(x, y);
-  const float longest = 0.5 * (xx + yy + length(vec2(xx - yy, 2.0 * xy)));
-  return longest > 0.0 ? 0.5 * log2(longest) : 0.0;
+  const float area = abs(x.x * y.y - x.y * y.x);
+  return area > 0.0 ? 0.5 * (log2(area) + f.tilt) : 0.0;
 }
 #else
 // log2 of the cone's length on the triangle, in units of the square root of twice its area.

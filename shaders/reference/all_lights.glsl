@@ -4,9 +4,7 @@
 #include "bsdf.glsl"
 #include "visibility.glsl"
 #include "spherical_triangle.glsl"
-#ifdef SCENE_ENVIRONMENT
 #include "bsdf_sample.glsl"
-#endif
 
 vec3 arriving(Surface surface, LightSample light) {
   if (light.radiance == vec3(0.0)) return vec3(0.0);
@@ -38,6 +36,31 @@ LightSample sampleBySolidAngle(Light light, SphericalTriangle t, vec2 u, vec3 po
 LightSample sampleByArea(Light light, vec2 u, vec3 position) {
   const float root = sqrt(u.x);
   return evaluateTriangle(light, vec2(root * (1.0 - u.y), root * u.y), position);
+}
+
+// On glossy surfaces stratum j of n² on the triangle or, beyond those, a direction along the specular lobe, weighted by the balance
+// heuristic (Veach 1997): the lobe's peak would otherwise make the variance all but infinite.
+LightSample sampleGlossy(Light light, SphericalTriangle t, Surface surface, bool alongLobe, vec2 u) {
+  LightSample s;
+  if (!alongLobe) {
+    if (t.near) s = sampleBySolidAngle(light, t, u, surface.position);
+    else s = sampleByArea(light, u, surface.position);
+  } else {
+    s.direction = sampleSpecular(surface, u);
+    s.radiance = vec3(0.0);
+    s.area = 0.0;
+    vec2 barycentrics;
+    if (!meetsTriangle(light, surface.position, s.direction, barycentrics)) return s;
+    s = evaluateTriangle(light, barycentrics, surface.position);
+  }
+  const vec3 d = s.target - surface.position;
+  const float perArea = abs(dot(cross(light.a, light.b), s.direction)) / (2.0 * light.area * dot(d, d));
+  // Densities per steradian; what sampleBySolidAngle() gives is radiance per steradian, all else is per area.
+  const float byTriangle = t.near ? 1.0 / t.solidAngle : 1.0 / (light.area * perArea);
+  const float density = byTriangle + specularDensity(surface, s.direction);
+  const float measured = t.near && !alongLobe ? density : density * perArea;
+  s.area = measured > 0.0 ? 1.0 / measured : 0.0;
+  return s;
 }
 
 #ifdef SCENE_ENVIRONMENT
@@ -85,6 +108,7 @@ void run(uvec2 pixel) {
   if (isSurface(packed)) {
     const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
     Random random = randomFor(pixel, 0u);
+    const bool glossy = isGlossy(surface);
     const uint n = uint(param_samples);  // a side of the stratified square on each triangle
     for (uint i = 0u; i < lightCount(); ++i) {
       const Light light = sceneLights[i];
@@ -94,7 +118,7 @@ void run(uvec2 pixel) {
       if (kind == kTriangle) {
         t = sphericalTriangle(light.position - surface.position, light.a, light.b, surface.error);
         strata = n * n;
-        samples = t.solidAngle > 0.0 ? strata : 0u;
+        samples = t.solidAngle > 0.0 ? (glossy ? 2u * strata : strata) : 0u;
       }
 #ifdef SCENE_ENVIRONMENT
       if (kind == kEnvironment) {
@@ -107,8 +131,10 @@ void run(uvec2 pixel) {
       for (uint j = 0u; j < samples; ++j) {
         LightSample s;
         if (kind == kTriangle) {
-          const vec2 u = (vec2(j % n, j / n) + next2(random)) / float(n);
-          if (t.near) s = sampleBySolidAngle(light, t, u, surface.position);
+          const uint stratum = j % strata;
+          const vec2 u = (vec2(stratum % n, stratum / n) + next2(random)) / float(n);
+          if (glossy) s = sampleGlossy(light, t, surface, j >= strata, u);
+          else if (t.near) s = sampleBySolidAngle(light, t, u, surface.position);
           else s = sampleByArea(light, u, surface.position);
 #ifdef SCENE_ENVIRONMENT
         } else if (kind == kEnvironment) {

@@ -1,12 +1,10 @@
 // Initial candidates by streaming RIS (Talbot et al. 2005; Bitterli et al. 2020, algorithm 3): M lights picked by power, one kept in
-// proportion to p̂/p. The environment is also found by directions that the BSDF prefers. Several reservoirs of a pixel share the
-// candidates and choose from them independently.
+// proportion to p̂/p. The environment is also found by directions that the BSDF prefers, points on triangles along its specular lobe.
+// Several reservoirs of a pixel share the candidates and choose from them independently.
 #include "random.glsl"
 #include "reservoir.glsl"
 #include "spherical_triangle.glsl"
-#ifdef SCENE_ENVIRONMENT
 #include "bsdf_sample.glsl"
-#endif
 
 const int kByArea = 0, kBySolidAngle = 1;
 
@@ -17,32 +15,57 @@ struct Candidate {
   float spread;  // 1 / density of the point: m² on triangles, steradian on the environment, 1 for punctual lights
 };
 
-// `error`: of the position, metres.
-Candidate drawCandidate(Light light, uvec2 bits, vec3 position, float error, inout Random random) {
+// A point on a triangle, drawn by area or by solid angle or, on glossy surfaces with the probability lobeShare, along the specular
+// lobe: a mixture whose density is that of all ways together.
+Candidate drawOnTriangle(Light light, vec2 u, Surface surface) {
+  const vec3 position = surface.position;
+  Candidate c;
+  c.spread = 0.0;
+  const float lobe = isGlossy(surface) ? param_lobeShare : 0.0;
+  SphericalTriangle t;
+  t.near = false;
+  if (param_triangles == kBySolidAngle) {
+    t = sphericalTriangle(light.position - position, light.a, light.b, surface.error);
+  }
+  // Seen edge on it has no solid angle, and whatever place stands here counts for nothing.
+  bool counts = !t.near || t.solidAngle > 0.0;
+  if (u.x < lobe) {
+    vec2 barycentrics;
+    counts = counts && meetsTriangle(light, position, sampleSpecular(surface, vec2(u.x / lobe, u.y)), barycentrics);
+    c.place = placeAt(barycentrics);
+  } else {
+    u.x = (u.x - lobe) / (1.0 - lobe);
+    c.place = packPlace(u);
+    if (t.near && counts) c.place = placeAt(barycentricsAlong(light, position, sampleSphericalTriangle(t, u)));
+  }
+  c.light = evaluateLight(light, c.place, position);
+  if (!counts) c.light.radiance = vec3(0.0);
+  if (lobe == 0.0 && !t.near) {
+    c.spread = c.light.area;
+    return c;
+  }
+  // dω = cos θ / d² dA turns densities per steradian into ones per m², at the very point that the 16 bits name.
+  const vec3 d = c.light.target - position;
+  const float perArea = abs(dot(cross(light.a, light.b), c.light.direction)) / (2.0 * light.area * dot(d, d));
+  float density = (1.0 - lobe) * (t.near ? perArea / t.solidAngle : 1.0 / c.light.area);
+  if (lobe > 0.0) density += lobe * specularDensity(surface, c.light.direction) * perArea;
+  if (counts && density > 0.0) c.spread = 1.0 / density;
+  return c;
+}
+
+Candidate drawCandidate(Light light, uvec2 bits, Surface surface, inout Random random) {
   Candidate c;
 #ifdef SCENE_ENVIRONMENT
   if ((light.kind & kKindMask) == kEnvironment) {
     c.place = pickEnvironment(nextBits4(random), c.spread);
-    c.light = evaluateEnvironment(c.place, position);
+    c.light = evaluateEnvironment(c.place, surface.position);
     return c;
   }
 #endif
   const vec2 u = vec2(uniformFloat(bits.x), uniformFloat(bits.y));
+  if ((light.kind & kKindMask) == kTriangle) return drawOnTriangle(light, u, surface);
   c.place = packPlace(u);
-  if (param_triangles == kBySolidAngle && (light.kind & kKindMask) == kTriangle) {
-    const SphericalTriangle t = sphericalTriangle(light.position - position, light.a, light.b, error);
-    if (t.near) {
-      // Seen edge on it has no solid angle, and whatever place stands here counts for nothing.
-      if (t.solidAngle > 0.0) c.place = placeAt(barycentricsAlong(light, position, sampleSphericalTriangle(t, u)));
-      c.light = evaluateLight(light, c.place, position);
-      // dω = cos θ / d² dA turns the uniform density 1/Ω into one per m², at the very point that the 16 bits name.
-      const vec3 d = c.light.target - position;
-      const float cosine = abs(dot(cross(light.a, light.b), c.light.direction)) / (2.0 * light.area);
-      c.spread = cosine > 0.0 ? t.solidAngle * dot(d, d) / cosine : 0.0;
-      return c;
-    }
-  }
-  c.light = evaluateLight(light, c.place, position);
+  c.light = evaluateLight(light, c.place, surface.position);
   c.spread = c.light.area;
   return c;
 }
@@ -77,7 +100,7 @@ void run(uvec2 pixel) {
       const uvec4 bits = nextBits4(random);
       const uint chosen = pickMixed(bits.xy, param_uniformShare);
       const Light light = sceneLights[chosen];
-      const Candidate c = drawCandidate(light, bits.zw, surface.position, surface.error, random);
+      const Candidate c = drawCandidate(light, bits.zw, surface, random);
       const float target = targetFunction(surface, c.light);
       if (!(target > 0.0)) continue;
       // 1/M · p̂ / p, with p = pdf of the light times density on it.

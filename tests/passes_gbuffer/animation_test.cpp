@@ -43,7 +43,9 @@ void expectMoment(const std::string& type, const scene::Scene& scene, const std:
     }
   }
   EXPECT_EQ(wrong, 0u);
-  if (moments.size() > 1) EXPECT_GT(moved, 20u) << "pixels of what moves";
+  if (moments.size() > 1) {
+    EXPECT_GT(moved, 20u) << "pixels of what moves";
+  }
 }
 
 struct Case {
@@ -67,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Case{"gbuffer.RayTraced", "block", false}, Case{"gbuffer.RayTraced", "column", true},
                     Case{"gbuffer.RayTraced", "ball", true}, Case{"gbuffer.RayTraced", "everything", true},
                     Case{"gbuffer.Raster", "block", false}, Case{"gbuffer.Raster", "everything", true}),
-    [](const auto& info) { return std::string(info.param.type).substr(8) + "_" + info.param.clip; });
+    [](const auto& which) { return std::string(which.param.type).substr(8) + "_" + which.param.clip; });
 
 TEST(MovingScene, HasNoPastInItsFirstFrameAndAfterACut) {
   const scene::Scene scene = own("cornell-moving.glb");

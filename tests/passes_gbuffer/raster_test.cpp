@@ -84,8 +84,8 @@ void expectSameMean(const Sum& a, const Sum& b) {
   EXPECT_NEAR(a.roughness, b.roughness, kMost * a.roughness) << "mean roughness";
 }
 
-/// Where textures have levels the two see them differently sharp (mipmap_test.cpp), so that materials and the normals
-/// of normal maps agree in the mean only.
+/// Where textures have levels, rounding of the level and of coordinates decides between texels: materials and the
+/// normals of normal maps are compared in the mean only; mipmap_test.cpp has levels pixel by pixel.
 void expectSame(const View& v, double mostSilhouettes) {
   const bool levels = scene::prepareScene(v.scene).traits.mipmaps;
   const double detail = levels ? 1e9 : 1;

@@ -183,6 +183,28 @@ TEST(AllLights, SliversOfALampThatTouchesTheFloorAreBounded) {
   EXPECT_GT(front, 200u);
 }
 
+// A white metal floor, all but a mirror, shows the lamp above it as bright as the lamp itself: where its whole lobe
+// meets the lamp, all of the radiance less what Smith's term shadows. Points on the lamp alone would leave most pixels
+// black and few a hundred times too bright; samples along the lobe bound each pixel, and the mean shows no bias.
+TEST(AllLights, MirrorsShowTheLampWithoutFireflies) {
+  for (const double roughness : {0.02, 0.1}) {
+    SCOPED_TRACE(roughness);
+    Builder b = floorOf({1, 1, 1}, 1, static_cast<float>(roughness));
+    addLamp(b, true, false, 2);
+    const scene::Camera camera = lookAt({0, 0.8f, 0.4f}, {0, 0, 0.1f}, 8);
+    const Picture p = render(b.scene, camera, 2);
+    glm::dvec3 mean(0);
+    const size_t n =
+        forSurfaces(b.scene, camera, p, [&](uint32_t i, const OracleSurface&, glm::dvec3, glm::dvec3 color) {
+          mean += color;
+          EXPECT_GT(color.x, 4 * 0.2) << "pixel " << i;
+          EXPECT_LT(color.x, 4 * 2.5) << "pixel " << i;
+        });
+    ASSERT_GT(n, 500u);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c] / static_cast<double>(n), 4 - c, 0.03 * (4 - c));
+  }
+}
+
 // A lamp lies in its own plane: whatever rounding makes of that, it sends itself no light.
 TEST(AllLights, ALampShowsItsEmissionAlone) {
   Builder b;

@@ -101,6 +101,40 @@ TEST(RestirInitial, NearTrianglesBySolidAngle) {
   }
 }
 
+// A glossy surface that reflects the emitter's middle into the eye: α = 0.01, so that the lobe covers a hundredth of
+// the emitter and its peak is a thousand times the diffuse part. Any share of the candidates along the lobe is
+// unbiased, and some is better than none. Chance of a false alarm: 1e-4 over the three shares.
+TEST(RestirInitial, GlossySurfacesAlongTheLobe) {
+  scene::Camera camera = frontCamera(5e-4);
+  View view(64, 64, camera);
+  const oracle::Vec toEmitter = glm::normalize(oracle::Vec(-1.0, 1.1, 2.1)), toEye(0, 0, 1);
+  const Finish finish{{0.3, 0.3, 0.3}, {0.5, 0.6, 0.7}, 0.1};
+  for (uint32_t i = 0; i < 64 * 64; ++i) {
+    view.setOnPlane(i % 64, i / 64, 0.0, glm::normalize(toEmitter + toEye), finish);
+  }
+  double truth = 0.0, errorWithout = 0.0;
+  for (const char* share : {"0", "0.25", "0.8"}) {
+    SCOPED_TRACE(share);
+    PassTest t("restir_di.Initial");
+    show(t, view, smallScene({.points = false, .spot = false, .blocker = false}));
+    t.param("candidates", "4").param("visibility", "false").param("lobeShare", share).seed(23);
+    const oracle::World world(t.prepared());
+    if (truth == 0.0) truth = world.directLight(view[64 * 32 + 32], false, 3000);
+    Sample sample;
+    for (int frame = 0; frame < 8; ++frame) {
+      t.run();
+      const std::vector<Reservoir> out = t.output<Reservoir>("reservoirs");
+      for (size_t i = 0; i < out.size(); ++i) sample.add(estimate(world, view[i], out[i], false) / truth);
+    }
+    EXPECT_TRUE(agrees(sample, 1.0, 1e-4, 3));
+    if (errorWithout == 0.0) {
+      errorWithout = sample.standardError();
+    } else {
+      EXPECT_LT(sample.standardError(), 0.5 * errorWithout);
+    }
+  }
+}
+
 // Positions that differ by 1e-4 of the distance: every pixel has the same targets.
 View onePointView(uint32_t width, uint32_t height) {
   return planeView(width, height, frontCamera(5e-4));

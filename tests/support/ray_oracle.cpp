@@ -161,13 +161,8 @@ double RayOracle::level(int32_t index, const OracleHit& hit, glm::dvec3 directio
   constexpr double kStep = 1e-3;  // pixels
   const glm::dvec2 x = (texelAt(kStep, 0) - texelAt(-kStep, 0)) / (2 * kStep);
   const glm::dvec2 y = (texelAt(0, kStep) - texelAt(0, -kStep)) / (2 * kStep);
-  // Half axes of the ellipse t -> cos t · x + sin t · y, by trying.
-  double longest = 0.0;
-  for (int i = 0; i < 720; ++i) {
-    const double t = i * 3.14159265358979 / 720;
-    longest = std::max(longest, glm::length(std::cos(t) * x + std::sin(t) * y));
-  }
-  return std::log2(longest);
+  const double tilt = std::abs(glm::dot(normal, direction)) / glm::length(normal);
+  return 0.5 * std::log2(std::abs(x.x * y.y - x.y * y.x) / tilt);
 }
 
 glm::dvec4 RayOracle::look(int32_t index, const OracleHit& hit, double level) const {

@@ -32,7 +32,8 @@ struct OracleSurface {
 enum class LevelRule : uint8_t {
   Zero,
   Cone,         ///< Akenine-Möller et al. 2021, with the root of the pixel's solid angle as the cone's
-  Derivatives,  ///< the longer half axis of the pixel's circle in the texture
+  Derivatives,  ///< the pixel's area in the texture by differences, over the cosine of the tilt: its longer side
+                ///< squared
 };
 
 /// Direction through a point of the picture, in pixels from the top left; unit length.
