@@ -16,7 +16,7 @@ class Matcher {
       state_.emplace_back(node.perPixel.size(), State::Unknown);
     }
     for (uint32_t n = 0; n < checked_.nodes.size(); ++n)
-      for (uint32_t o = 0; o < checked_.nodes[n].perPixel.size(); ++o) count(n, o);
+      for (uint32_t o = 0; o < checked_.nodes[n].perPixel.size(); ++o) count(n, o, false);
     for (const Node& node : checked_.nodes)
       for (const Link& link : node.links) matchLink(node, link);
   }
@@ -29,21 +29,38 @@ class Matcher {
     return node.enabled() ? link.resolved : link.written;
   }
 
+  /// An output whose count is being asked for, and whether it was reached by way of last frame's value.
+  struct Step {
+    uint32_t node, output;
+    bool previous;
+  };
+
+  /// A circle within one frame is findCycles()'s to report, once; left for here are those through last frame's values.
+  bool isReportedAsCycle(uint32_t n, uint32_t o, bool previous) const {
+    bool everPrevious = previous;
+    for (size_t i = path_.size(); i-- > 0 && (path_[i].node != n || path_[i].output != o);)
+      everPrevious |= path_[i].previous;
+    return checked_.nodes[n].enabled() && !everPrevious;
+  }
+
   /// Elements a pixel of an output; 0 when it can't be known.
-  uint32_t count(uint32_t n, uint32_t o) {
+  uint32_t count(uint32_t n, uint32_t o, bool previous) {
     Node& node = checked_.nodes[n];
     State& state = state_[n][o];
     if (state == State::Known) return node.perPixel[o];
     const PortDescription& port = node.type->outputs[o];
     if (state == State::Asked) {
-      findings_.add(
-          node.entry->line, "passes." + node.name(),
-          fmt::format("the count of elements of output '{}' depends on itself, by way of its inputs", port.name));
+      if (!isReportedAsCycle(n, o, previous))
+        findings_.add(
+            node.entry->line, "passes." + node.name(),
+            fmt::format("the count of elements of output '{}' depends on itself, by way of its inputs", port.name));
       state = State::Known;
       return 0;
     }
     state = State::Asked;
+    path_.push_back({n, o, previous});
     const uint32_t found = findCount(node, port);
+    path_.pop_back();
     state = State::Known;
     return node.perPixel[o] = found;
   }
@@ -55,7 +72,7 @@ class Matcher {
     for (const Link& link : node.links) {
       if (link.input == kNone || node.type->inputs[link.input].name != type.perPixelFromInput) continue;
       const Source& source = sourceOf(node, link);
-      return source.known() ? count(source.node, source.output) : 0;
+      return source.known() ? count(source.node, source.output, source.previous) : 0;
     }
     return 0;
   }
@@ -120,6 +137,7 @@ class Matcher {
   Checked& checked_;
   Findings& findings_;
   std::vector<std::vector<State>> state_;
+  std::vector<Step> path_;  // of the counts that are Asked, in order
 };
 
 }  // namespace

@@ -145,6 +145,15 @@ TEST_F(Plan, ACountThatDependsOnItselfIsAnError) {
   EXPECT_NE(r.text().find("depends on itself"), std::string::npos);
 }
 
+TEST_F(Plan, ACountThatGoesRoundWithinAFrameIsACycleAndSaidOnce) {
+  const Result r = run(graphOf("\"m\": {\"type\": \"t.Many\", \"inputs\": {\"in\": \"k.like\"}},\n"
+                               "\"k\": {\"type\": \"t.Many\", \"inputs\": {\"in\": \"m.like\"}}",
+                               "\"x\": \"m.like\""),
+                       fakes);
+  ASSERT_EQ(r.diagnostics.size(), 1u) << r.text();
+  EXPECT_NE(r.text().find("cycle"), std::string::npos) << r.text();
+}
+
 TEST_F(Plan, TiesAreBrokenByName) {
   const Result r = run(graphOf("\"z\": {\"type\": \"t.Source\"}, \"a\": {\"type\": \"t.Source\"},\n"
                                "\"b\": {\"type\": \"t.Mix\", \"inputs\": {\"a\": \"z.o\", \"b\": \"a.o\"}}",
