@@ -4,7 +4,7 @@
     tools/corpus.py [FOLDER] [--weir build/release/bin/weir] [--json OUT.json] [--jobs N] [--only TEXT] [--quick]
 
 Good is: exit status 0, or 2 with a message; no signal; no sanitizer report; at most 5 s of processor time, compiling
-shaders left out, and 1 GiB of memory each (a build with sanitizers gets four times as much: they watch every access). FOLDER
+shaders left out, and 1 GiB of memory each, with sanitizers or without. FOLDER
 (default: malformed in $WEIR_SCENES, else in ../shared/scenes) may have an INDEX.tsv that names the files and their faults;
 without it every .gltf and .glb counts. --quick renders only files that `weir scene` accepts. Exit status: 1 if any file
 fails, 77 without a folder.
@@ -35,11 +35,11 @@ def files_of(folder):
     return [(str(p.relative_to(folder)), "") for p in sorted(found)]
 
 
-def run(command, factor):
+def run(command):
     """How a process ended, what it took, and what is wrong with that (an empty text: nothing)."""
     env = dict(os.environ, ASAN_OPTIONS="detect_leaks=0:allocator_may_return_null=0:detect_odr_violation=0",
                UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1")
-    cpu = int(60 * factor)
+    cpu = 60
     start = time.monotonic()
     with tempfile.TemporaryFile() as output:
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=output, env=env, preexec_fn=lambda:
@@ -62,28 +62,28 @@ def run(command, factor):
         problem = f"exit status {process.returncode}"
     elif process.returncode == 2 and not message:
         problem = "refused without a message"
-    elif result["cpu_seconds"] > SECONDS * factor:
+    elif result["cpu_seconds"] > SECONDS:
         problem = f"{result['cpu_seconds']} s of processor time"
-    elif result["mebibytes"] > MEBIBYTES * factor:
+    elif result["mebibytes"] > MEBIBYTES:
         problem = f"{result['mebibytes']} MiB"
     result["problem"] = problem
     return result
 
 
-def run_warm(command, factor):
+def run_warm(command):
     """As run(); what takes too long gets a second try, with the shaders that the first one has compiled and kept."""
-    result = run(command, factor)
-    return run(command, factor) if "processor time" in result["problem"] else result
+    result = run(command)
+    return run(command) if "processor time" in result["problem"] else result
 
 
 def one(task):
-    folder, name, faults, weir, factor, quick = task
+    folder, name, faults, weir, quick = task
     path = str(folder / name)
-    row = {"file": name, "faults": faults, "scene": run([weir, "scene", path], factor)}
+    row = {"file": name, "faults": faults, "scene": run([weir, "scene", path])}
     if not (quick and row["scene"]["exit"] == 2):
         with tempfile.TemporaryDirectory() as out:
             row["render"] = run_warm([weir, "render", str(ROOT / "graphs/restir_di.json"), "--scene", path, "--size", "8x8",
-                                      "--device", "cpu", "--out", f"color={out}/c.png"], factor)
+                                      "--device", "cpu", "--out", f"color={out}/c.png"])
     for part in ("scene", "render"):
         if part in row:
             row[part]["message"] = row[part]["message"].replace(str(folder) + "/", "")
@@ -128,7 +128,7 @@ def main():
         print(f"*** NO MALFORMED FILES AT {folder}: SKIPPED ***", file=sys.stderr)
         return 77  # ctest's "skipped"
     sanitized = b"__asan_init" in pathlib.Path(options.weir).read_bytes()
-    tasks = [(folder, name, faults, options.weir, 4 if sanitized else 1, options.quick)
+    tasks = [(folder, name, faults, options.weir, options.quick)
              for name, faults in files_of(folder) if options.only in name]
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         rows = list(pool.map(one, tasks))
