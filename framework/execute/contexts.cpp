@@ -2,6 +2,7 @@
 #include <weir/core/error.h>
 #include <weir/core/text.h>
 #include <weir/execute/contexts.h>
+#include <weir/gpu/barrier.h>
 
 #include <algorithm>
 #include <span>
@@ -158,15 +159,7 @@ const PassRuntime::PreparedKernel& Recording::kernelOf(Kernel kernel) const {
 
 void Recording::barrier(VkPipelineStageFlags2 before, VkAccessFlags2 beforeAccess, VkPipelineStageFlags2 after,
                         VkAccessFlags2 afterAccess) {
-  VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  memory.srcStageMask = before;
-  memory.srcAccessMask = beforeAccess;
-  memory.dstStageMask = after;
-  memory.dstAccessMask = afterAccess;
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &memory;
-  vkCmdPipelineBarrier2(cursor_.commands, &info);
+  gpu::memoryBarrier(cursor_.commands, before, beforeAccess, after, afterAccess);
 }
 
 void Recording::bind(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint32_t h, uint32_t index) {

@@ -2,6 +2,7 @@
 #include <weir/core/error.h>
 #include <weir/core/text.h>
 #include <weir/execute/executor.h>
+#include <weir/gpu/barrier.h>
 
 #include <algorithm>
 #include <chrono>
@@ -19,19 +20,6 @@ double milliseconds(Clock::time_point from) {
 
 constexpr uint64_t kConstantsStride = 256;  // the largest minUniformBufferOffsetAlignment that Vulkan allows
 static_assert(sizeof(FrameConstants) <= kConstantsStride);
-
-void memoryBarrier(VkCommandBuffer commands, VkPipelineStageFlags2 before, VkAccessFlags2 beforeAccess,
-                   VkPipelineStageFlags2 after, VkAccessFlags2 afterAccess) {
-  VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  memory.srcStageMask = before;
-  memory.srcAccessMask = beforeAccess;
-  memory.dstStageMask = after;
-  memory.dstAccessMask = afterAccess;
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &memory;
-  vkCmdPipelineBarrier2(commands, &info);
-}
 
 }  // namespace
 
@@ -194,7 +182,7 @@ void Executor::beforePass(VkCommandBuffer commands, size_t pass) const {
     afterAccess |= VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT;
   }
   if (before != 0 && passes_[pass]->stages() != 0) {
-    memoryBarrier(commands, before, beforeAccess, passes_[pass]->stages(), afterAccess);
+    gpu::memoryBarrier(commands, before, beforeAccess, passes_[pass]->stages(), afterAccess);
   }
 }
 
@@ -216,10 +204,10 @@ void Executor::record(Slot& slot, uint32_t slotIndex, const FrameInput& input) {
   writeConstants(input, slotIndex);
   if (clearNext_) {
     const VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-    memoryBarrier(slot.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any, VK_PIPELINE_STAGE_2_TRANSFER_BIT, any);
+    gpu::memoryBarrier(slot.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any, VK_PIPELINE_STAGE_2_TRANSFER_BIT, any);
     resources_.clearHistory(slot.commands);
-    memoryBarrier(slot.commands, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any);
+    gpu::memoryBarrier(slot.commands, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                       VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any);
     clearNext_ = false;
   }
   FrameCursor cursor{slot.commands, sceneSets_[parity], static_cast<uint32_t>(slotIndex * kConstantsStride), parity};

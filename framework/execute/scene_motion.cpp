@@ -1,5 +1,6 @@
 #include <weir/core/paths.h>
 #include <weir/execute/scene_motion.h>
+#include <weir/gpu/barrier.h>
 
 #include <algorithm>
 #include <cstring>
@@ -18,19 +19,6 @@ struct DeformPush {
   float side = 1.0f;
 };
 constexpr uint32_t kDeformGroup = 64, kMostGroups = 65535;
-
-void barrier(VkCommandBuffer commands, VkPipelineStageFlags2 before, VkAccessFlags2 beforeAccess,
-             VkPipelineStageFlags2 after, VkAccessFlags2 afterAccess) {
-  VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  memory.srcStageMask = before;
-  memory.srcAccessMask = beforeAccess;
-  memory.dstStageMask = after;
-  memory.dstAccessMask = afterAccess;
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &memory;
-  vkCmdPipelineBarrier2(commands, &info);
-}
 
 }  // namespace
 
@@ -228,8 +216,9 @@ void SceneMotion::deform(VkCommandBuffer commands, uint32_t half) const {
   };
   for (const scene::Deformation& d : prepared_.deformations) launch(pushOf(d), false, d.vertices);
   if (prepared_.flatTriangles.empty()) return;
-  barrier(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
-          VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT);
+  gpu::memoryBarrier(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
+                     VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                     VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT);
   for (const scene::Deformation& d : prepared_.deformations) launch(pushOf(d), true, d.flats);
 }
 
@@ -243,29 +232,29 @@ void SceneMotion::record(VkCommandBuffer commands, uint32_t slot, uint32_t half,
     previousLargestSide_ = 0.0f;
   }
   const VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  barrier(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any);
+  gpu::memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any);
   upload(commands, slot, half, fresh);
   const VkPipelineStageFlags2 build =
       acceleration_ ? VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR : VkPipelineStageFlags2{0};
   const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  barrier(commands, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute | build,
-          VK_ACCESS_2_SHADER_READ_BIT);
+  gpu::memoryBarrier(commands, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute | build,
+                     VK_ACCESS_2_SHADER_READ_BIT);
   for (uint32_t h = 0; h < 2; ++h) {
     if (prepared_.traits.deforms && (h == half || fresh)) deform(commands, h);
     // Both halves write the normals, alike.
     if (prepared_.traits.deforms && fresh && h == 0)
-      barrier(commands, compute, VK_ACCESS_2_SHADER_WRITE_BIT, compute, VK_ACCESS_2_SHADER_WRITE_BIT);
+      gpu::memoryBarrier(commands, compute, VK_ACCESS_2_SHADER_WRITE_BIT, compute, VK_ACCESS_2_SHADER_WRITE_BIT);
   }
   if (acceleration_) {
-    barrier(commands, compute, VK_ACCESS_2_SHADER_WRITE_BIT, build, VK_ACCESS_2_SHADER_READ_BIT);
+    gpu::memoryBarrier(commands, compute, VK_ACCESS_2_SHADER_WRITE_BIT, build, VK_ACCESS_2_SHADER_READ_BIT);
     for (uint32_t h = 0; h < 2; ++h)
       if (h == half || fresh) acceleration_->record(commands, h, fresh);
   }
   VkAccessFlags2 written = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
   if (acceleration_) written |= VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
-  barrier(commands, VK_PIPELINE_STAGE_2_TRANSFER_BIT | compute | build, written, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-          VK_ACCESS_2_MEMORY_READ_BIT);
+  gpu::memoryBarrier(commands, VK_PIPELINE_STAGE_2_TRANSFER_BIT | compute | build, written,
+                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT);
 }
 
 float SceneMotion::diameter() const {
