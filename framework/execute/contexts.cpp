@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <span>
+#include <type_traits>
 
 namespace weir::execute {
 namespace {
@@ -20,26 +21,30 @@ std::string hint(const std::string& name, const std::vector<std::string>& known)
 template <typename Base>
 template <typename T>
 T Answers<Base>::get(const std::string& param) const {
-  const auto found = pass_.params.find(param);
-  if (found == pass_.params.end()) {
+  const graph::CompiledPass& pass = runtime_.compiled();
+  const auto found = pass.params.find(param);
+  if (found == pass.params.end()) {
     std::vector<std::string> known;
-    for (const auto& [name, value] : pass_.params) known.push_back(name);
-    throw InputError(fmt::format("{} ({}) asks for parameter '{}', which it doesn't declare{}", pass_.name, pass_.type,
+    for (const auto& [name, value] : pass.params) known.push_back(name);
+    throw InputError(fmt::format("{} ({}) asks for parameter '{}', which it doesn't declare{}", pass.name, pass.type,
                                  param, hint(param, known)));
   }
   if (!std::holds_alternative<T>(found->second)) {
     throw InputError(
-        fmt::format("{} ({}) asks for parameter '{}' as another type than it declares", pass_.name, pass_.type, param));
+        fmt::format("{} ({}) asks for parameter '{}' as another type than it declares", pass.name, pass.type, param));
   }
+  // What a pass looked at while it prepared, its kernels may depend on.
+  if constexpr (std::is_same_v<Base, PrepareContext>) runtime_.asked_.insert(param);
   return std::get<T>(found->second);
 }
 
 template <typename Base>
 bool Answers<Base>::connected(const std::string& input) const {
-  for (const graph::Binding& b : pass_.inputs) {
+  const graph::CompiledPass& pass = runtime_.compiled();
+  for (const graph::Binding& b : pass.inputs) {
     if (b.port == input) return b.resource != graph::kNone;
   }
-  throw InputError(fmt::format("{} ({}) asks for input '{}', which it doesn't declare", pass_.name, pass_.type, input));
+  throw InputError(fmt::format("{} ({}) asks for input '{}', which it doesn't declare", pass.name, pass.type, input));
 }
 
 template class Answers<PrepareContext>;
@@ -47,13 +52,13 @@ template class Answers<RecordContext>;
 
 void Preparing::beforeKernels(const std::string& what) const {
   if (!runtime_.kernels_.empty()) {
-    throw InputError(fmt::format("{}: {} must be declared before the first kernel", runtime_.compiled_.name, what));
+    throw InputError(fmt::format("{}: {} must be declared before the first kernel", runtime_.compiled().name, what));
   }
 }
 
 void Preparing::scratch(const std::string& name, const PortType& type) {
   beforeKernels("scratch '" + name + "'");
-  const graph::CompiledPass& pass = runtime_.compiled_;
+  const graph::CompiledPass& pass = runtime_.compiled();
   uint32_t perPixel = type.perPixel;
   if (!type.perPixelFromParam.empty()) perPixel = static_cast<uint32_t>(integer(type.perPixelFromParam));
   if (!type.perPixelFromInput.empty()) {
@@ -70,21 +75,24 @@ void Preparing::scratch(const std::string& name, const PortType& type) {
   };
   const uint32_t w = scaled(width()), h = scaled(height());
   const uint64_t elements = type.fixedCount > 0 ? type.fixedCount : uint64_t{w} * h * perPixel;
-  const bool attachment = type.format == Format::R32U && runtime_.shared_.device->capabilities().graphics;
-  runtime_.scratch_.push_back(
-      makeStorage(*runtime_.shared_.device, type, w, h, elements, attachment, pass.name + " scratch " + name));
+  graph::Resource r;
+  r.name = pass.name + " scratch " + name;
+  r.type = type;
+  r.width = type.fixedCount > 0 ? 0 : w;
+  r.height = type.fixedCount > 0 ? 0 : h;
+  r.perPixel = perPixel;
+  const bool image = type.kind == PortKind::Image;
+  r.elements = image ? 0 : elements;
+  r.bytes = image ? uint64_t{w} * h * formatBytes(type.format) : elements * type.layout.stride;
+  runtime_.addScratch(std::move(r));
   runtime_.interface_.scratch.push_back({name, type, perPixel});
-  if (runtime_.scratch_.back().image) {
-    runtime_.shared_.device->submitAndWait(
-        [&](VkCommandBuffer commands) { toGeneral(commands, runtime_.scratch_.back().image); });
-  }
 }
 
 void Preparing::texture(const std::string& name, TextureData data) {
   beforeKernels("texture '" + name + "'");
   const uint64_t texels = uint64_t{data.width} * data.height * std::max(1u, data.depth);
   if (data.rgba.size() != 4 * texels) {
-    throw InputError(fmt::format("{}: texture '{}' has {} numbers, not {}", runtime_.compiled_.name, name,
+    throw InputError(fmt::format("{}: texture '{}' has {} numbers, not {}", runtime_.compiled().name, name,
                                  data.rgba.size(), 4 * texels));
   }
   gpu::ImageDesc desc;
@@ -94,12 +102,12 @@ void Preparing::texture(const std::string& name, TextureData data) {
   desc.type = data.depth > 0 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
   desc.format = VK_FORMAT_R32G32B32A32_SFLOAT;
   PassRuntime::OwnTexture own;
-  own.image = gpu::uploadImage(*runtime_.shared_.device, desc, std::as_bytes(std::span(data.rgba)),
-                               runtime_.compiled_.name + " texture " + name);
+  own.image = gpu::uploadImage(runtime_.device(), desc, std::as_bytes(std::span(data.rgba)),
+                               runtime_.compiled().name + " texture " + name);
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
   info.magFilter = info.minFilter = data.linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
   info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  gpu::check(vkCreateSampler(runtime_.shared_.device->handle(), &info, nullptr, &own.sampler), "vkCreateSampler");
+  gpu::check(vkCreateSampler(runtime_.device().handle(), &info, nullptr, &own.sampler), "vkCreateSampler");
   runtime_.textures_.push_back(std::move(own));
   runtime_.interface_.textures.emplace_back(name, data.depth > 0);
 }
@@ -109,50 +117,52 @@ Kernel Preparing::kernel(const std::string& file, const KernelOptions& options) 
 }
 
 Kernel Preparing::rayKernel(const std::string& file, const KernelOptions& options) {
-  const graph::CompiledPass& pass = runtime_.compiled_;
+  const graph::CompiledPass& pass = runtime_.compiled();
   if (!pass.description->has(Need::SceneAcceleration)) {
     throw InputError(fmt::format("{} ({}) traces rays but doesn't declare scene.acceleration", pass.name, pass.type));
   }
   if (runtime_.shared_.backend == trace::Backend::None) {
     throw InputError(
         fmt::format("{} ({}) traces rays, and {} can't: it has neither ray-tracing pipelines nor ray queries",
-                    pass.name, pass.type, runtime_.shared_.device->info().name));
+                    pass.name, pass.type, runtime_.device().info().name));
   }
   const bool pipeline = runtime_.shared_.backend == trace::Backend::Pipeline;
   return runtime_.addKernel(pipeline ? KernelKind::RayPipeline : KernelKind::RayQuery, file, options);
 }
 
 Kernel Preparing::rasterKernel(const std::string& file, const std::string& target, const KernelOptions& options) {
-  const graph::CompiledPass& pass = runtime_.compiled_;
-  if (!runtime_.shared_.device->capabilities().graphics) {
+  const graph::CompiledPass& pass = runtime_.compiled();
+  if (!runtime_.device().capabilities().graphics) {
     throw InputError(fmt::format("{} ({}) rasterises, and {} has no graphics queue", pass.name, pass.type,
-                                 runtime_.shared_.device->info().name));
+                                 runtime_.device().info().name));
   }
   uint32_t index = graph::kNone;
-  for (uint32_t i = 0; i < runtime_.interface_.scratch.size(); ++i) {
-    const Scratch& s = runtime_.interface_.scratch[i];
-    if (s.name == target && s.type.kind == PortKind::Image && s.type.format == Format::R32U) index = i;
+  for (const Scratch& s : runtime_.interface_.scratch) {
+    if (s.name == target && s.type.kind == PortKind::Image && s.type.format == Format::R32U)
+      index = runtime_.slotNamed("scratch_" + target).resource;
   }
   if (index == graph::kNone) {
     throw InputError(fmt::format("{}: rasterKernel's target '{}' is no R32U scratch image", pass.name, target));
   }
-  const gpu::ImageDesc& color = runtime_.scratch_[index].image.desc();
-  gpu::ImageDesc desc;
-  desc.width = color.width;
-  desc.height = color.height;
-  desc.format = VK_FORMAT_D32_SFLOAT;
-  desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-  runtime_.depth_ = gpu::Image(*runtime_.shared_.device, desc, pass.name + " depth");
-  runtime_.shared_.device->submitAndWait([&](VkCommandBuffer commands) { toGeneral(commands, runtime_.depth_); });
+  const graph::Resource& color = runtime_.shared_.graph->resources[index];
+  graph::Resource depth;
+  depth.name = fmt::format("{} depth of {}", pass.name, target);
+  depth.type = storageImage(Format::R32F);
+  depth.depth = true;
+  depth.width = color.width;
+  depth.height = color.height;
+  depth.bytes = uint64_t{4} * color.width * color.height;
+  const uint32_t depthIndex = runtime_.addScratch(std::move(depth));
   const Kernel kernel = runtime_.addKernel(KernelKind::Vertex, file, options);
-  runtime_.kernels_[kernel.index].rasterTarget = index;
+  runtime_.kernels_[kernel.index].target = index;
+  runtime_.kernels_[kernel.index].depth = depthIndex;
   return kernel;
 }
 
 const PassRuntime::PreparedKernel& Recording::kernelOf(Kernel kernel) const {
   if (kernel.index >= runtime_.kernels_.size()) {
-    throw InputError(fmt::format("{} ({}) launches a kernel that it never prepared", runtime_.compiled_.name,
-                                 runtime_.compiled_.type));
+    throw InputError(fmt::format("{} ({}) launches a kernel that it never prepared", runtime_.compiled().name,
+                                 runtime_.compiled().type));
   }
   return runtime_.kernels_[kernel.index];
 }
@@ -165,15 +175,14 @@ void Recording::barrier(VkPipelineStageFlags2 before, VkAccessFlags2 beforeAcces
 void Recording::bind(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint32_t h, uint32_t index) {
   // Launches of one pass see what the ones before them wrote.
   if (!first_) {
-    const VkAccessFlags2 both = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT;
-    barrier(runtime_.stages_,
-            VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT * (runtime_.depth_ ? 1 : 0),
-            runtime_.stages_, both);
+    const VkPipelineStageFlags2 stages = vulkanStages(runtime_.stages_);
+    barrier(stages, writeAccess(runtime_.stages_), stages,
+            readAccess(runtime_.stages_) | writeAccess(runtime_.stages_));
   }
   first_ = false;
   const VkPipelineBindPoint point = kernel.pipeline->bindPoint();
   vkCmdBindPipeline(cursor_.commands, point, kernel.pipeline->handle());
-  const std::array sets = {cursor_.sceneSet, kernel.sets[cursor_.parity]};
+  const std::array sets = {cursor_.sceneSet, kernel.sets[(runtime_.bySlot_ ? 2 * cursor_.slot : 0) + cursor_.parity]};
   vkCmdBindDescriptorSets(cursor_.commands, point, runtime_.pipelineLayout_, 0, static_cast<uint32_t>(sets.size()),
                           sets.data(), 1, &cursor_.frameOffset);
   std::vector<uint32_t>& push = runtime_.push_;
@@ -192,15 +201,13 @@ void Recording::launch(Kernel kernel, uint32_t launchWidth, uint32_t launchHeigh
 
 void Recording::draw(Kernel kernel) {
   const PassRuntime::PreparedKernel& prepared = kernelOf(kernel);
-  const gpu::Image& target = runtime_.scratch_[prepared.rasterTarget].image;
+  if (prepared.target == graph::kNone)
+    throw InputError(fmt::format("{} ({}) draws with a kernel that is no rasterKernel", runtime_.compiled().name,
+                                 runtime_.compiled().type));
+  const gpu::Image& target = runtime_.resources_->at(prepared.target, 0, false).image;
+  const gpu::Image& depthBuffer = runtime_.resources_->at(prepared.depth, 0, false).image;
   const VkExtent2D extent{target.desc().width, target.desc().height};
   bind(prepared, extent.width, extent.height, 0);
-  // Depth and target were last touched by the frame before this one.
-  barrier(VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-          VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT,
-          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
-              VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT);
   VkRenderingAttachmentInfo color{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
   color.imageView = target.view();
   color.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
@@ -208,7 +215,7 @@ void Recording::draw(Kernel kernel) {
   color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   color.clearValue.color.uint32[0] = 0xffffffffu;
   VkRenderingAttachmentInfo depth{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-  depth.imageView = runtime_.depth_.view();
+  depth.imageView = depthBuffer.view();
   depth.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
   depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
   depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
@@ -223,7 +230,7 @@ void Recording::draw(Kernel kernel) {
   const VkRect2D scissor{{0, 0}, extent};
   vkCmdSetViewport(cursor_.commands, 0, 1, &viewport);
   vkCmdSetScissor(cursor_.commands, 0, 1, &scissor);
-  const auto& draws = *runtime_.shared_.draws;
+  const auto& draws = runtime_.shared_.frame->draws();
   for (uint32_t i = 0; i < draws.size(); ++i) {
     vkCmdSetCullMode(cursor_.commands, draws[i].doubleSided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
     vkCmdSetFrontFace(cursor_.commands,

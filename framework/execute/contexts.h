@@ -9,29 +9,27 @@ namespace weir::execute {
 template <typename Base>
 class Answers : public Base {
  public:
-  explicit Answers(const graph::CompiledPass& pass, const graph::CompiledGraph& graph, std::string sceneFolder)
-      : pass_(pass), graph_(graph), sceneFolder_(std::move(sceneFolder)) {}
+  explicit Answers(PassRuntime& runtime) : runtime_(runtime) {}
   bool boolean(const std::string& param) const override { return get<bool>(param); }
   int integer(const std::string& param) const override { return get<int32_t>(param); }
   float number(const std::string& param) const override { return get<float>(param); }
   std::string text(const std::string& param) const override { return get<std::string>(param); }
   bool connected(const std::string& input) const override;
-  uint32_t width() const override { return graph_.width; }
-  uint32_t height() const override { return graph_.height; }
-  std::string sceneFolder() const override { return sceneFolder_; }
+  uint32_t width() const override { return runtime_.shared_.graph->width; }
+  uint32_t height() const override { return runtime_.shared_.graph->height; }
+  std::string sceneFolder() const override { return runtime_.shared_.sceneFolder; }
+
+ protected:
+  PassRuntime& runtime_;
 
  private:
   template <typename T>
   T get(const std::string& param) const;
-  const graph::CompiledPass& pass_;
-  const graph::CompiledGraph& graph_;
-  std::string sceneFolder_;
 };
 
 class Preparing final : public Answers<PrepareContext> {
  public:
-  explicit Preparing(PassRuntime& runtime)
-      : Answers(runtime.compiled_, *runtime.shared_.graph, runtime.shared_.sceneFolder), runtime_(runtime) {}
+  using Answers::Answers;
   void scratch(const std::string& name, const PortType& type) override;
   void texture(const std::string& name, TextureData data) override;
   Kernel kernel(const std::string& file, const KernelOptions& options) override;
@@ -40,15 +38,11 @@ class Preparing final : public Answers<PrepareContext> {
 
  private:
   void beforeKernels(const std::string& what) const;
-  PassRuntime& runtime_;
 };
 
 class Recording final : public Answers<RecordContext> {
  public:
-  Recording(PassRuntime& runtime, const FrameCursor& cursor)
-      : Answers(runtime.compiled_, *runtime.shared_.graph, runtime.shared_.sceneFolder),
-        runtime_(runtime),
-        cursor_(cursor) {}
+  Recording(PassRuntime& runtime, const FrameCursor& cursor) : Answers(runtime), cursor_(cursor) {}
   void launch(Kernel kernel, uint32_t index) override { launch(kernel, width(), height(), index); }
   void launch(Kernel kernel, uint32_t launchWidth, uint32_t launchHeight, uint32_t index) override;
   void draw(Kernel kernel) override;
@@ -58,7 +52,6 @@ class Recording final : public Answers<RecordContext> {
   void bind(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint32_t h, uint32_t index);
   void barrier(VkPipelineStageFlags2 before, VkAccessFlags2 beforeAccess, VkPipelineStageFlags2 after,
                VkAccessFlags2 afterAccess);
-  PassRuntime& runtime_;
   const FrameCursor& cursor_;
   bool first_ = true;
 };

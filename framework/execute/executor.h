@@ -1,34 +1,18 @@
-// Runs a compiled graph frame after frame: one submission a frame, two in flight, timestamps around every pass.
+// Runs a graph frame after frame: one submission a frame, two in flight, timestamps around every pass. The graph can be
+// swapped for another between two frames.
 #pragma once
 
-#include <weir/execute/frame_constants.h>
-#include <weir/execute/pass_runtime.h>
-#include <weir/execute/scene_motion.h>
+#include <weir/execute/graph_runtime.h>
 #include <weir/image/image.h>
 
+#include <array>
 #include <cstddef>
-#include <deque>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace weir::execute {
-
-struct ExecutorOptions {
-  trace::Backend backend = trace::Backend::None;
-  bool countRays = false;   ///< an atomic add a ray: for statistics, not for timing
-  std::string sceneFolder;  ///< what passes resolve relative files against
-};
-
-struct FrameInput {
-  scene::Camera camera;
-  uint32_t index = 0;  ///< frame number: a key of the random numbers
-  uint32_t seed = 0;
-  bool cut = false;  ///< the camera jumped: history is cleared, nothing moved
-  /// Where a clip has taken the scene; none: where it was, at first at rest. Ignored where no clip moves the scene.
-  const scene::SceneState* state = nullptr;
-};
 
 /// Milliseconds of one frame.
 struct FrameTimes {
@@ -46,10 +30,20 @@ class Executor {
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
-  const graph::CompiledGraph& graph() const { return graph_; }
+  /// With scratch memory, places and barriers as they are on this device.
+  const graph::CompiledGraph& graph() const { return runtime_->graph(); }
+  const GraphRuntime& runtime() const { return *runtime_; }
+
+  /// Goes on with another graph, or the same with other parameters or another size. History goes on where pass, type,
+  /// layout and size are the same, and is empty elsewhere. When it throws, the graph that was there goes on.
+  void swap(graph::CompiledGraph graph);
+  /// Compiles the shaders anew from their files. When one does not compile it throws, and the old ones go on.
+  void reloadShaders();
+  /// Pipelines that were made so far: what a swap or a reload had to compile.
+  uint64_t pipelinesMade() const { return pipelines_.made(); }
 
   /// The next frame starts without history, as the first one does.
-  void resetHistory() { clearNext_ = true; }
+  void resetHistory() { scene_.forget(); }
   /// Records and submits; returns before the GPU is done. Throws RuntimeError (device lost, …).
   void frame(const FrameInput& input);
   /// Waits for everything submitted.
@@ -60,20 +54,23 @@ class Executor {
   /// Meaning of an output port: how a PNG must encode it.
   Meaning meaning(const std::string& output) const;
   /// Raw bytes of a resource ("pass.port") as the last frame left it, and, for tests, putting some in before a frame.
+  /// InputError where somebody else uses the memory: compile the graph with `keep`.
   std::vector<std::byte> readResource(const std::string& name);
   void writeResource(const std::string& name, std::span<const std::byte> bytes);
 
-  /// Times of finished frames since the last call, oldest first.
+  /// Times of finished frames since the last call, oldest first; of the last kTimesKept at most.
   std::vector<FrameTimes> takeTimes();
+  static constexpr size_t kTimesKept = 64;
   /// Rays of the last finished frame; 0 unless countRays.
   uint64_t rays() const { return rays_; }
   uint64_t transientBytes() const;
-  uint64_t historyBytes() const { return resources_.historyBytes(); }
-  /// What a moving scene takes besides SceneGpu::bytes().
-  uint64_t motionBytes() const { return motion_ ? motion_->bytes() : 0; }
+  uint64_t historyBytes() const { return graph().historyBytes(); }
+  /// What transient resources would take more if they shared no memory.
+  uint64_t savedBytes() const;
+  uint64_t motionBytes() const { return scene_.motionBytes(); }
 
  private:
-  static constexpr uint32_t kSlots = SceneMotion::kSlots;
+  static constexpr uint32_t kSlots = SceneFrame::kSlots;
   struct Slot {
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -83,31 +80,25 @@ class Executor {
     FrameTimes times;
   };
 
-  void makeSceneSets(shader::Compiler& compiler);
-  void freeSceneSets();
   void makeSlots();
+  void makeTimers();
+  void replace(graph::CompiledGraph graph);
   void collect(Slot& slot);
-  void writeConstants(const FrameInput& input, uint32_t slot);
   void record(Slot& slot, uint32_t slotIndex, const FrameInput& input);
-  void beforePass(VkCommandBuffer commands, size_t pass) const;
   uint32_t resourceNamed(const std::string& name) const;
   std::vector<std::byte> download(const Storage& storage);
-  void stamp(const Slot& slot, uint32_t query) const;
 
   const gpu::Device& device_;
-  graph::CompiledGraph graph_;
-  const scene::SceneGpu& scene_;
-  Resources resources_;
-  Shared shared_;
-  gpu::Buffer constants_, rayCounter_;
-  std::unique_ptr<SceneMotion> motion_;         ///< only where a clip moves the scene
-  std::array<VkDescriptorSet, 2> sceneSets_{};  ///< by parity; of a still scene both are one
-  std::vector<std::unique_ptr<PassRuntime>> passes_;
+  ExecutorOptions options_;
+  Services services_;
+  PipelineLibrary pipelines_;
+  SceneFrame scene_;
+  graph::CompiledGraph source_;  ///< as it was given, without what passes add
+  std::unique_ptr<GraphRuntime> runtime_;
   std::array<Slot, kSlots> slots_;
-  uint64_t frames_ = 0;
-  bool clearNext_ = true;
-  GpuCamera previousCamera_;
-  std::deque<FrameTimes> times_;
+  std::vector<uint64_t> ticks_;
+  std::vector<FrameTimes> times_;  ///< a ring, allocated once
+  size_t firstTime_ = 0, timesHeld_ = 0;
   uint64_t rays_ = 0;
 };
 

@@ -1,9 +1,10 @@
 // One pass of a compiled graph on the device: what its prepare() asked for, and what its record() launches.
 #pragma once
 
-#include <weir/execute/pipelines.h>
+#include <weir/execute/pipeline_library.h>
 #include <weir/execute/prelude.h>
 #include <weir/execute/resources.h>
+#include <weir/execute/scene_frame.h>
 #include <weir/pass/pass.h>
 #include <weir/pass/registry.h>
 #include <weir/scene/upload.h>
@@ -12,24 +13,30 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace weir::execute {
 
-/// What all passes of an executor share. Owned by the executor, outlives the runtimes.
-struct Shared {
+/// What runtimes of graphs need and do not own.
+struct Services {
   const gpu::Device* device = nullptr;
   shader::Compiler* compiler = nullptr;
   Registry* registry = nullptr;
-  const scene::SceneGpu* scene = nullptr;
-  const std::vector<scene::SceneGpu::Draw>* draws = nullptr;  ///< of each instance in this frame
-  const graph::CompiledGraph* graph = nullptr;
-  const Resources* resources = nullptr;
+  PipelineLibrary* pipelines = nullptr;
+};
+
+/// What all passes of a graph share. Owned by the graph's runtime, outlives theirs.
+struct Shared {
+  Services services;
+  const SceneFrame* frame = nullptr;
+  graph::CompiledGraph* graph = nullptr;  ///< passes add their scratch resources to it
   trace::Backend backend = trace::Backend::None;
   bool countRays = false;
   std::string sceneFolder;
   std::optional<HitShaders> hitShaders;  ///< compiled when first needed
+  std::set<std::string> files;           ///< that shaders were read from
 };
 
 /// Where in a frame the recording is.
@@ -37,59 +44,82 @@ struct FrameCursor {
   VkCommandBuffer commands = VK_NULL_HANDLE;
   VkDescriptorSet sceneSet = VK_NULL_HANDLE;
   uint32_t frameOffset = 0;  ///< dynamic offset of the frame constants
-  uint32_t parity = 0;
+  uint32_t slot = 0, parity = 0;
 };
 
 class PassRuntime {
  public:
-  /// Creates the pass and runs its prepare(). Throws what that throws, with the pass's name in front.
-  PassRuntime(Shared& shared, const graph::CompiledPass& pass);
+  /// Creates the pass and runs its prepare(), which adds scratch resources to the graph. Throws what that throws, with
+  /// the pass's name in front.
+  PassRuntime(Shared& shared, uint32_t index);
   ~PassRuntime();
   PassRuntime(const PassRuntime&) = delete;
   PassRuntime& operator=(const PassRuntime&) = delete;
 
+  /// Binds the graph's resources to the kernels. With `bySlot` each frame in flight has bindings of its own, as the
+  /// host's resources may change from one to the next; what is not there yet is left unbound.
+  void bind(const Resources& resources, bool bySlot);
+  /// The same for one slot, which no frame in flight uses.
+  void rebind(const Resources& resources, uint32_t slot);
   void record(const FrameCursor& cursor);
 
-  VkPipelineStageFlags2 stages() const { return stages_; }  ///< of all its kernels
-  bool hasScratch() const { return !scratch_.empty(); }
-  uint64_t scratchBytes() const;
+  graph::Stages stages() const { return stages_; }  ///< of all its kernels
+  /// Whether the parameters of `pass` can be used without preparing anew, and then using them.
+  bool accepts(const graph::CompiledPass& pass) const;
+  void take(const graph::CompiledPass& pass);
 
  private:
   friend class Preparing;
   friend class Recording;
+  template <typename Base>
+  friend class Answers;
+  /// A binding of set 1 and the resource that stands there.
+  struct Slot {
+    uint32_t binding = 0, resource = graph::kNone;
+    bool previous = false;
+  };
   struct PreparedKernel {
-    Pipeline* pipeline = nullptr;
-    std::array<VkDescriptorSet, 2> sets{};  ///< by parity
-    uint32_t rasterTarget = graph::kNone;   ///< index into scratch_
+    std::shared_ptr<Pipeline> pipeline;
+    std::vector<Slot> slots;
+    std::array<VkDescriptorSet, 2ul * SceneFrame::kSlots> sets{};  ///< by parity, or by slot and parity
+    uint32_t target = graph::kNone, depth = graph::kNone;          ///< resources, of raster kernels
   };
   struct OwnTexture {
     gpu::Image image;
     VkSampler sampler = VK_NULL_HANDLE;
   };
 
+  graph::CompiledPass& compiled() const { return shared_.graph->passes[index_]; }
+  const gpu::Device& device() const { return *shared_.services.device; }
   void makeLayouts();
+  void fillPush();
+  uint32_t addScratch(graph::Resource resource);
   Kernel addKernel(KernelKind kind, const std::string& file, const KernelOptions& options);
-  shader::CompileRequest request(shader::Stage stage, const std::string& source, const KernelOptions& options) const;
-  std::array<VkDescriptorSet, 2> makeSets(const KernelOptions& options);
-  const Storage& storageNamed(const std::string& name, uint32_t parity) const;
+  std::vector<uint32_t> compile(KernelKind kind, shader::Stage stage, const std::string& file,
+                                const KernelOptions& options);
+  std::string pipelineKey(KernelKind kind, const std::vector<const std::vector<uint32_t>*>& spirv) const;
+  std::vector<Slot> slotsFor(const KernelOptions& options) const;
+  Slot slotNamed(const std::string& name) const;
+  void makeSets(PreparedKernel& kernel, uint32_t count);
+  void writeSet(const PreparedKernel& kernel, VkDescriptorSet set, const Resources& resources, uint32_t slot,
+                uint32_t parity) const;
   const HitShaders& hitShaders();
 
   Shared& shared_;
-  const graph::CompiledPass& compiled_;
+  uint32_t index_;
   PassPtr pass_;
   KernelInterface interface_;
-  std::vector<Storage> scratch_;
-  gpu::Image depth_;  ///< of raster kernels
   std::vector<OwnTexture> textures_;
   VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
   VkPipelineLayout pipelineLayout_ = VK_NULL_HANDLE;
   std::vector<VkDescriptorPool> pools_;
-  std::vector<std::pair<std::string, std::unique_ptr<Pipeline>>>
-      pipelines_;  ///< by kind and source: kernels that differ in bindings share one
   std::vector<PreparedKernel> kernels_;
   std::vector<uint32_t> push_;  ///< the launch's four words, then parameters
   Specialization constants_;
-  VkPipelineStageFlags2 stages_ = 0;
+  graph::Stages stages_ = 0;
+  bool bySlot_ = false;
+  const Resources* resources_ = nullptr;  ///< once bound
+  std::set<std::string> asked_;           ///< parameters that prepare() looked at
 };
 
 }  // namespace weir::execute

@@ -83,14 +83,37 @@ Pipeline& Pipeline::operator=(Pipeline&& other) noexcept {
   return *this;
 }
 
-VkPipelineStageFlags2 Pipeline::stages() const {
+VkPipelineStageFlags2 vulkanStages(graph::Stages stages) {
+  VkPipelineStageFlags2 result = 0;
+  if ((stages & graph::kComputeStage) != 0) result |= VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  if ((stages & graph::kRayStage) != 0) result |= VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR;
+  if ((stages & graph::kRasterStage) != 0)
+    result |= VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT |
+              VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT |
+              VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+  return result;
+}
+
+VkAccessFlags2 writeAccess(graph::Stages stages) {
+  const bool raster = (stages & graph::kRasterStage) != 0;
+  return VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+         (raster ? VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT : 0);
+}
+
+VkAccessFlags2 readAccess(graph::Stages stages) {
+  const bool raster = (stages & graph::kRasterStage) != 0;
+  return VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
+         (raster ? VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT : 0);
+}
+
+graph::Stages Pipeline::stages() const {
   switch (bindPoint_) {
     case VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR:
-      return VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR;
+      return graph::kRayStage;
     case VK_PIPELINE_BIND_POINT_GRAPHICS:
-      return VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
+      return graph::kRasterStage;
     default:
-      return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+      return graph::kComputeStage;
   }
 }
 

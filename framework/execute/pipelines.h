@@ -2,6 +2,7 @@
 #pragma once
 
 #include <weir/gpu/memory.h>
+#include <weir/graph/compile.h>
 
 #include <cstdint>
 #include <span>
@@ -12,6 +13,12 @@ namespace weir::execute {
 
 /// Values of specialisation constants 0, 1, …, four bytes each.
 using Specialization = std::vector<uint32_t>;
+
+/// A plan's stages as Vulkan calls them.
+VkPipelineStageFlags2 vulkanStages(graph::Stages stages);
+/// How kernels in these stages write what belongs to the graph: storage, and what raster kernels draw into.
+VkAccessFlags2 writeAccess(graph::Stages stages);
+VkAccessFlags2 readAccess(graph::Stages stages);
 
 struct HitShaders {
   std::vector<uint32_t> closestHit, closestAnyHit, closestMiss, shadowAnyHit, shadowMiss;
@@ -37,7 +44,7 @@ class Pipeline {
   /// Launches width × height invocations (compute: in 8 × 8 groups). Everything must be bound.
   void launch(VkCommandBuffer commands, uint32_t width, uint32_t height) const;
   VkPipelineBindPoint bindPoint() const { return bindPoint_; }
-  VkPipelineStageFlags2 stages() const;
+  graph::Stages stages() const;
 
  private:
   const gpu::Device* device_ = nullptr;

@@ -55,12 +55,12 @@ void unpackPixel(const std::byte* from, Format format, float* to) {
 
 uint32_t Executor::resourceNamed(const std::string& name) const {
   std::vector<std::string> names;
-  for (uint32_t i = 0; i < graph_.resources.size(); ++i) {
-    if (graph_.resources[i].name == name) return i;
-    names.push_back(graph_.resources[i].name);
+  for (uint32_t i = 0; i < graph().resources.size(); ++i) {
+    if (graph().resources[i].name == name) return i;
+    names.push_back(graph().resources[i].name);
   }
   const std::string nearest = nearestName(name, names);
-  throw InputError(fmt::format("no resource '{}' in graph '{}'{}", name, graph_.name,
+  throw InputError(fmt::format("no resource '{}' in graph '{}'{}", name, graph().name,
                                nearest.empty() ? "" : " (nearest: '" + nearest + "')"));
 }
 
@@ -85,15 +85,20 @@ std::vector<std::byte> Executor::download(const Storage& storage) {
 
 std::vector<std::byte> Executor::readResource(const std::string& name) {
   finish();
-  const uint32_t parity = static_cast<uint32_t>((frames_ + 1) & 1u);  // of the last frame
-  return download(resources_.at(resourceNamed(name), parity, false));
+  const uint32_t index = resourceNamed(name), last = static_cast<uint32_t>(graph().passes.size() - 1);
+  const graph::Resource& r = graph().resources[index];
+  if (r.external) throw InputError(fmt::format("'{}' is the host's: ask the host for it", name));
+  if (r.transient() && r.shares && r.lastUse != last)
+    throw InputError(fmt::format("'{}' is not kept to the frame's end: other resources use its memory", name));
+  const uint32_t parity = static_cast<uint32_t>((scene_.frames() + 1) & 1u);  // of the last frame
+  return download(runtime_->resources().at(index, parity, false));
 }
 
 void Executor::writeResource(const std::string& name, std::span<const std::byte> bytes) {
   finish();
   // Both copies: the frame to come reads this one as its own or as the one before it.
   for (uint32_t parity = 0; parity < 2; ++parity) {
-    const Storage& storage = resources_.at(resourceNamed(name), parity, false);
+    const Storage& storage = runtime_->resources().at(resourceNamed(name), parity, false);
     const gpu::Buffer staging(device_, bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Residency::Upload,
                               "upload");
     std::memcpy(staging.mapped(), bytes.data(), bytes.size());
@@ -113,11 +118,11 @@ void Executor::writeResource(const std::string& name, std::span<const std::byte>
 }
 
 Meaning Executor::meaning(const std::string& output) const {
-  const graph::GraphOutput* found = graph_.findOutput(output);
-  if (found == nullptr) throw InputError(fmt::format("graph '{}' has no output '{}'", graph_.name, output));
-  const graph::Resource& resource = graph_.resources[found->resource];
+  const graph::GraphOutput* found = graph().findOutput(output);
+  if (found == nullptr) throw InputError(fmt::format("graph '{}' has no output '{}'", graph().name, output));
+  const graph::Resource& resource = graph().resources[found->resource];
   if (resource.producer == graph::kNone) return Meaning::Data;
-  const graph::CompiledPass& pass = graph_.passes[resource.producer];
+  const graph::CompiledPass& pass = graph().passes[resource.producer];
   for (size_t i = 0; i < pass.outputs.size(); ++i) {
     if (pass.outputs[i].resource == found->resource) return pass.description->outputs[i].meaning;
   }
@@ -126,21 +131,21 @@ Meaning Executor::meaning(const std::string& output) const {
 
 image::Picture Executor::read(const std::string& output) {
   std::vector<std::string> names;
-  for (const graph::GraphOutput& o : graph_.outputs) names.push_back(o.name);
-  const graph::GraphOutput* found = graph_.findOutput(output);
+  for (const graph::GraphOutput& o : graph().outputs) names.push_back(o.name);
+  const graph::GraphOutput* found = graph().findOutput(output);
   if (found == nullptr) {
     const std::string nearest = nearestName(output, names);
-    throw InputError(fmt::format("graph '{}' has no output '{}'{}", graph_.name, output,
+    throw InputError(fmt::format("graph '{}' has no output '{}'{}", graph().name, output,
                                  nearest.empty() ? "" : " (nearest: '" + nearest + "')"));
   }
-  const graph::Resource& resource = graph_.resources[found->resource];
+  const graph::Resource& resource = graph().resources[found->resource];
   if (resource.type.kind != PortKind::Image) {
     throw InputError(fmt::format("output '{}' ({}) is a buffer of {}, not a picture", output, resource.name,
                                  resource.type.layout.name));
   }
   finish();
-  const uint32_t parity = static_cast<uint32_t>((frames_ + 1) & 1u);
-  const std::vector<std::byte> bytes = download(resources_.at(found->resource, parity, found->previous));
+  const uint32_t parity = static_cast<uint32_t>((scene_.frames() + 1) & 1u);
+  const std::vector<std::byte> bytes = download(runtime_->resources().at(found->resource, parity, found->previous));
   image::Picture picture;
   picture.width = resource.width;
   picture.height = resource.height;

@@ -1,6 +1,29 @@
 #include <weir/execute/resources.h>
 
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
 namespace weir::execute {
+namespace {
+
+constexpr VkBufferUsageFlags kBufferUsage =
+    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+
+bool sameType(const PortType& a, const PortType& b) {
+  return compatible(a, b) && a.layout.emptyWord == b.layout.emptyWord;
+}
+
+/// Whether history may go on as if nothing had happened: the same values, made by the same pass.
+bool sameHistory(const graph::CompiledGraph& ga, const graph::Resource& a, const graph::CompiledGraph& gb,
+                 const graph::Resource& b) {
+  return a.history && b.history && a.name == b.name && sameType(a.type, b.type) && a.width == b.width &&
+         a.height == b.height && a.elements == b.elements && a.bytes == b.bytes && ga.width == gb.width &&
+         ga.height == gb.height && ga.passes[a.producer].type == gb.passes[b.producer].type;
+}
+
+}  // namespace
 
 VkFormat vulkanFormat(Format format) {
   switch (format) {
@@ -20,28 +43,33 @@ VkFormat vulkanFormat(Format format) {
   return VK_FORMAT_UNDEFINED;
 }
 
-Storage makeStorage(const gpu::Device& device, const PortType& type, uint32_t width, uint32_t height, uint64_t elements,
-                    bool attachment, const std::string& name) {
-  constexpr uint32_t kTransferBoth = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-  Storage s;
-  if (type.kind == PortKind::Buffer) {
-    s.buffer = gpu::Buffer(device, elements * type.layout.stride, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | kTransferBoth,
-                           gpu::Residency::Device, name);
-    s.bytes = s.buffer.size();
-  } else {
-    gpu::ImageDesc desc;
-    desc.width = width;
-    desc.height = height;
-    desc.format = vulkanFormat(type.format);
-    desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    if (attachment) desc.usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-    s.image = gpu::Image(device, desc, name);
-    s.bytes = s.image.bytes();
+gpu::ImageDesc imageDesc(const gpu::Device& device, const graph::Resource& resource) {
+  gpu::ImageDesc desc;
+  desc.width = resource.width;
+  desc.height = resource.height;
+  desc.format = resource.depth ? VK_FORMAT_D32_SFLOAT : vulkanFormat(resource.type.format);
+  if (resource.depth) {
+    desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    return desc;
   }
-  return s;
+  desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  // What a raster kernel may draw into.
+  if (resource.scratch && resource.type.format == Format::R32U && device.capabilities().graphics)
+    desc.usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  return desc;
 }
 
-void toGeneral(VkCommandBuffer commands, const gpu::Image& image) {
+std::vector<graph::MemoryNeed> deviceNeeds(const gpu::Device& device, const graph::CompiledGraph& graph) {
+  std::vector<graph::MemoryNeed> needs;
+  for (const graph::Resource& r : graph.resources) {
+    const gpu::MemoryNeeds n =
+        r.isImage() ? imageNeeds(device, imageDesc(device, r)) : bufferNeeds(device, r.bytes, kBufferUsage);
+    needs.push_back({n.bytes, n.alignment, n.kinds});
+  }
+  return needs;
+}
+
+VkImageMemoryBarrier2 toGeneral(const gpu::Image& image) {
   VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
@@ -51,10 +79,7 @@ void toGeneral(VkCommandBuffer commands, const gpu::Image& image) {
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image.handle();
   barrier.subresourceRange = {image.aspect(), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.imageMemoryBarrierCount = 1;
-  info.pImageMemoryBarriers = &barrier;
-  vkCmdPipelineBarrier2(commands, &info);
+  return barrier;
 }
 
 void clear(VkCommandBuffer commands, const Storage& storage, const PortType& type) {
@@ -67,34 +92,100 @@ void clear(VkCommandBuffer commands, const Storage& storage, const PortType& typ
   vkCmdClearColorImage(commands, storage.image.handle(), VK_IMAGE_LAYOUT_GENERAL, &zero, 1, &range);
 }
 
-Resources::Resources(const gpu::Device& device, const graph::CompiledGraph& graph) : graph_(&graph) {
-  for (const graph::Resource& r : graph.resources) {
-    std::array<Storage, 2>& copies = copies_.emplace_back();
-    for (int copy = 0; copy < (r.history ? 2 : 1); ++copy) {
-      const std::string name = r.history ? r.name + (copy == 0 ? " (even)" : " (odd)") : r.name;
-      copies[copy] = makeStorage(device, r.type, r.width, r.height, r.elements, false, name);
-      (r.history ? historyBytes_ : transientBytes_) += copies[copy].bytes;
-    }
+void poison(VkCommandBuffer commands, const Storage& storage, const graph::Resource& resource) {
+  constexpr uint32_t kPoison = 0xcdcdcdcdu;
+  if (storage.buffer) {
+    vkCmdFillBuffer(commands, storage.buffer.handle(), 0, VK_WHOLE_SIZE, kPoison);
+    return;
   }
-  device.submitAndWait([&](VkCommandBuffer commands) {
-    for (const auto& copies : copies_) {
-      for (const Storage& s : copies) {
-        if (s.image) toGeneral(commands, s.image);
-      }
+  const VkImageSubresourceRange range{storage.image.aspect(), 0, 1, 0, 1};
+  if (resource.depth) {
+    const VkClearDepthStencilValue value{0.25f, 0};
+    vkCmdClearDepthStencilImage(commands, storage.image.handle(), VK_IMAGE_LAYOUT_GENERAL, &value, 1, &range);
+    return;
+  }
+  VkClearColorValue value{};
+  for (int c = 0; c < 4; ++c) {
+    if (resource.type.format == Format::R32U)
+      value.uint32[c] = kPoison;
+    else
+      value.float32[c] = std::numeric_limits<float>::quiet_NaN();
+  }
+  vkCmdClearColorImage(commands, storage.image.handle(), VK_IMAGE_LAYOUT_GENERAL, &value, 1, &range);
+}
+
+Resources::Resources(const gpu::Device& device, const graph::CompiledGraph& graph, const Resources* before)
+    : graph_(&graph) {
+  for (size_t b = 0; b < graph.blocks.size(); ++b) {
+    const graph::MemoryBlock& block = graph.blocks[b];
+    blocks_.emplace_back(device, gpu::MemoryNeeds{block.bytes, block.alignment, block.kinds},
+                         graph.name + " shared block " + std::to_string(b + 1));
+  }
+  for (std::vector<Storage>& slot : external_) slot.resize(graph.resources.size());
+  const auto make = [&](const graph::Resource& r, const std::string& name) {
+    Storage s;
+    const gpu::Memory* block = r.block == graph::kNone ? nullptr : &blocks_[r.block];
+    if (r.isImage()) {
+      const gpu::ImageDesc desc = imageDesc(device, r);
+      s.image = block ? gpu::Image(device, desc, *block, r.offset, name) : gpu::Image(device, desc, name);
+    } else {
+      s.buffer = block ? gpu::Buffer(device, r.bytes, kBufferUsage, *block, r.offset, name)
+                       : gpu::Buffer(device, r.bytes, kBufferUsage, gpu::Residency::Device, name);
     }
+    return s;
+  };
+  std::vector<VkImageMemoryBarrier2> transitions;
+  for (uint32_t i = 0; i < graph.resources.size(); ++i) {
+    const graph::Resource& r = graph.resources[i];
+    std::shared_ptr<Copies>& copies = copies_.emplace_back();
+    if (r.external) continue;
+    for (size_t k = 0; r.history && before && k < before->copies_.size(); ++k)
+      if (sameHistory(graph, r, *before->graph_, before->graph_->resources[k])) copies = before->copies_[k];
+    if (copies) {
+      if (std::count(before->fresh_.begin(), before->fresh_.end(), indexIn(*before, copies)) > 0) fresh_.push_back(i);
+      continue;
+    }
+    copies = std::make_shared<Copies>();
+    (*copies)[0] = make(r, r.history ? r.name + " (even)" : r.name);
+    if (r.history) {
+      (*copies)[1] = make(r, r.name + " (odd)");
+      fresh_.push_back(i);
+    }
+    if (r.shares) continue;  // put into the layout anew in every frame
+    for (const Storage& s : *copies)
+      if (s.image) transitions.push_back(toGeneral(s.image));
+  }
+  if (transitions.empty()) return;
+  device.submitAndWait([&](VkCommandBuffer commands) {
+    VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    info.imageMemoryBarrierCount = static_cast<uint32_t>(transitions.size());
+    info.pImageMemoryBarriers = transitions.data();
+    vkCmdPipelineBarrier2(commands, &info);
   });
+}
+
+uint32_t Resources::indexIn(const Resources& resources, const std::shared_ptr<Copies>& copies) {
+  for (uint32_t i = 0; i < resources.copies_.size(); ++i)
+    if (resources.copies_[i] == copies) return i;
+  return graph::kNone;
 }
 
 const Storage& Resources::at(uint32_t resource, uint32_t parity, bool previous) const {
   const bool second = graph_->resources[resource].history && ((parity & 1u) != (previous ? 1u : 0u));
-  return copies_[resource][second ? 1 : 0];
+  return (*copies_[resource])[second ? 1 : 0];
 }
 
-void Resources::clearHistory(VkCommandBuffer commands) const {
-  for (size_t r = 0; r < copies_.size(); ++r) {
+void Resources::setExternal(uint32_t resource, uint32_t slot, Storage storage) {
+  external_[slot][resource] = std::move(storage);
+}
+
+void Resources::clearHistory(VkCommandBuffer commands, bool all) {
+  for (uint32_t r = 0; r < copies_.size(); ++r) {
     if (!graph_->resources[r].history) continue;
-    for (const Storage& s : copies_[r]) clear(commands, s, graph_->resources[r].type);
+    if (!all && std::count(fresh_.begin(), fresh_.end(), r) == 0) continue;
+    for (const Storage& s : *copies_[r]) clear(commands, s, graph_->resources[r].type);
   }
+  fresh_.clear();
 }
 
 }  // namespace weir::execute

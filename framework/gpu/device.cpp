@@ -149,9 +149,9 @@ void Device::name(VkObjectType type, uint64_t handle, const std::string& name) c
   vkSetDebugUtilsObjectNameEXT(device_, &info);
 }
 
-void Device::beginLabel(VkCommandBuffer commands, const std::string& name) const {
+void Device::beginLabel(VkCommandBuffer commands, const char* name) const {
   if (!hasDebugUtils()) return;
-  const VkDebugUtilsLabelEXT label{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = name.c_str()};
+  const VkDebugUtilsLabelEXT label{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = name};
   vkCmdBeginDebugUtilsLabelEXT(commands, &label);
 }
 

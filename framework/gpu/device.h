@@ -71,7 +71,7 @@ class Device {
 
   /// Gives a Vulkan object its name in captures and messages. No-op without VK_EXT_debug_utils.
   void name(VkObjectType type, uint64_t handle, const std::string& name) const;
-  void beginLabel(VkCommandBuffer commands, const std::string& name) const;
+  void beginLabel(VkCommandBuffer commands, const char* name) const;
   void endLabel(VkCommandBuffer commands) const;
 
   /// Records with `record`, submits and waits: for loading and tests, never inside a frame.

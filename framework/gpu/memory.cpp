@@ -71,8 +71,24 @@ Buffer::Buffer(const Device& device, uint64_t size, VkBufferUsageFlags usage, Re
   device.name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(buffer_), name);
 }
 
+Buffer::Buffer(const Device& device, uint64_t size, VkBufferUsageFlags usage, const Memory& memory, uint64_t offset,
+               const std::string& name)
+    : device_(&device), size_(size == 0 ? 16 : size) {
+  const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size_, .usage = usage};
+  checkAllocation(vmaCreateAliasingBuffer2(device.allocator(), memory.allocation(), offset, &info, &buffer_),
+                  "vmaCreateAliasingBuffer2", name, size_);
+  device.name(VK_OBJECT_TYPE_BUFFER, reinterpret_cast<uint64_t>(buffer_), name);
+}
+
+Buffer Buffer::borrowed(VkBuffer buffer, uint64_t size) {
+  Buffer b;
+  b.buffer_ = buffer;
+  b.size_ = size;
+  return b;
+}
+
 Buffer::~Buffer() {
-  if (buffer_) vmaDestroyBuffer(device_->allocator(), buffer_, allocation_);
+  if (buffer_ && device_) vmaDestroyBuffer(device_->allocator(), buffer_, allocation_);
 }
 
 Buffer::Buffer(Buffer&& other) noexcept
@@ -103,44 +119,122 @@ void Buffer::invalidate() const {
   check(vmaInvalidateAllocation(device_->allocator(), allocation_, 0, VK_WHOLE_SIZE), "vmaInvalidateAllocation");
 }
 
+namespace {
+
+VkImageCreateInfo createInfo(const ImageDesc& desc) {
+  return {.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+          .imageType = desc.type,
+          .format = desc.format,
+          .extent = {desc.width, desc.height, desc.depth},
+          .mipLevels = desc.mipLevels,
+          .arrayLayers = 1,
+          .samples = VK_SAMPLE_COUNT_1_BIT,
+          .tiling = VK_IMAGE_TILING_OPTIMAL,
+          .usage = desc.usage};
+}
+
+/// Buffers and images may lie side by side only a page of the device's choice apart.
+MemoryNeeds needsOf(const Device& device, const VkMemoryRequirements& asked) {
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(device.physical(), &properties);
+  const uint64_t page = std::max(asked.alignment, properties.limits.bufferImageGranularity);
+  return {(asked.size + page - 1) / page * page, page, asked.memoryTypeBits};
+}
+
+}  // namespace
+
+MemoryNeeds bufferNeeds(const Device& device, uint64_t size, VkBufferUsageFlags usage) {
+  const VkBufferCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size == 0 ? 16 : size, .usage = usage};
+  const VkDeviceBufferMemoryRequirements ask{.sType = VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS,
+                                             .pCreateInfo = &info};
+  VkMemoryRequirements2 asked{.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2};
+  vkGetDeviceBufferMemoryRequirements(device.handle(), &ask, &asked);
+  return needsOf(device, asked.memoryRequirements);
+}
+
+MemoryNeeds imageNeeds(const Device& device, const ImageDesc& desc) {
+  const VkImageCreateInfo info = createInfo(desc);
+  const VkDeviceImageMemoryRequirements ask{.sType = VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS,
+                                            .pCreateInfo = &info};
+  VkMemoryRequirements2 asked{.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2};
+  vkGetDeviceImageMemoryRequirements(device.handle(), &ask, &asked);
+  return needsOf(device, asked.memoryRequirements);
+}
+
+Memory::Memory(const Device& device, const MemoryNeeds& needs, const std::string& name) : device_(&device) {
+  const VkMemoryRequirements asked{needs.bytes, needs.alignment, needs.kinds};
+  const VmaAllocationCreateInfo info{.requiredFlags = 0, .preferredFlags = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
+  checkAllocation(vmaAllocateMemory(device.allocator(), &asked, &info, &allocation_, nullptr), "vmaAllocateMemory",
+                  name, needs.bytes);
+  vmaSetAllocationName(device.allocator(), allocation_, name.c_str());
+}
+
+Memory::~Memory() {
+  if (allocation_) vmaFreeMemory(device_->allocator(), allocation_);
+}
+
+Memory::Memory(Memory&& other) noexcept
+    : device_(std::exchange(other.device_, {})), allocation_(std::exchange(other.allocation_, {})) {}
+
+Memory& Memory::operator=(Memory&& other) noexcept {
+  std::swap(device_, other.device_);
+  std::swap(allocation_, other.allocation_);
+  return *this;
+}
+
 Image::Image(const Device& device, const ImageDesc& desc, const std::string& name) : device_(&device), desc_(desc) {
-  const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                               .imageType = desc.type,
-                               .format = desc.format,
-                               .extent = {desc.width, desc.height, desc.depth},
-                               .mipLevels = desc.mipLevels,
-                               .arrayLayers = 1,
-                               .samples = VK_SAMPLE_COUNT_1_BIT,
-                               .tiling = VK_IMAGE_TILING_OPTIMAL,
-                               .usage = desc.usage};
+  const VkImageCreateInfo info = createInfo(desc);
   const VmaAllocationCreateInfo allocate = allocationFor(Residency::Device);
   VmaAllocationInfo allocated;
   checkAllocation(vmaCreateImage(device.allocator(), &info, &allocate, &image_, &allocation_, &allocated),
                   "vmaCreateImage", name, uint64_t{16} * desc.width * desc.height * desc.depth);
   bytes_ = allocated.size;
-  const VkImageViewType viewType = desc.type == VK_IMAGE_TYPE_1D   ? VK_IMAGE_VIEW_TYPE_1D
-                                   : desc.type == VK_IMAGE_TYPE_3D ? VK_IMAGE_VIEW_TYPE_3D
-                                                                   : VK_IMAGE_VIEW_TYPE_2D;
+  vmaSetAllocationName(device.allocator(), allocation_, name.c_str());
+  makeView(name);
+}
+
+Image::Image(const Device& device, const ImageDesc& desc, const Memory& memory, uint64_t offset,
+             const std::string& name)
+    : device_(&device), desc_(desc) {
+  const VkImageCreateInfo info = createInfo(desc);
+  checkAllocation(vmaCreateAliasingImage2(device.allocator(), memory.allocation(), offset, &info, &image_),
+                  "vmaCreateAliasingImage2", name, uint64_t{16} * desc.width * desc.height * desc.depth);
+  makeView(name);
+}
+
+Image Image::borrowed(VkImage image, VkImageView view, const ImageDesc& desc) {
+  Image i;
+  i.image_ = image;
+  i.view_ = view;
+  i.desc_ = desc;
+  return i;
+}
+
+void Image::makeView(const std::string& name) {
+  const VkImageViewType viewType = desc_.type == VK_IMAGE_TYPE_1D   ? VK_IMAGE_VIEW_TYPE_1D
+                                   : desc_.type == VK_IMAGE_TYPE_3D ? VK_IMAGE_VIEW_TYPE_3D
+                                                                    : VK_IMAGE_VIEW_TYPE_2D;
   const VkImageViewCreateInfo view{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
                                    .image = image_,
                                    .viewType = viewType,
-                                   .format = desc.format,
-                                   .subresourceRange = {aspect(), 0, desc.mipLevels, 0, 1}};
+                                   .format = desc_.format,
+                                   .subresourceRange = {aspect(), 0, desc_.mipLevels, 0, 1}};
   // An image that is only copied from and to may not have a view.
   constexpr VkImageUsageFlags kViewable =
       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
-  if (desc.usage & kViewable) {
-    const VkResult result = vkCreateImageView(device.handle(), &view, nullptr, &view_);
-    if (result != VK_SUCCESS) vmaDestroyImage(device.allocator(), image_, allocation_);
+  if (desc_.usage & kViewable) {
+    const VkResult result = vkCreateImageView(device_->handle(), &view, nullptr, &view_);
+    if (result != VK_SUCCESS) vmaDestroyImage(device_->allocator(), image_, allocation_);
     check(result, "vkCreateImageView");
   }
-  vmaSetAllocationName(device.allocator(), allocation_, name.c_str());
-  device.name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(image_), name);
-  device.name(VK_OBJECT_TYPE_IMAGE_VIEW, reinterpret_cast<uint64_t>(view_), name);
+  device_->name(VK_OBJECT_TYPE_IMAGE, reinterpret_cast<uint64_t>(image_), name);
+  device_->name(VK_OBJECT_TYPE_IMAGE_VIEW, reinterpret_cast<uint64_t>(view_), name);
 }
 
 Image::~Image() {
+  if (!device_) return;  // nothing, or borrowed
   if (view_) vkDestroyImageView(device_->handle(), view_, nullptr);
   if (image_) vmaDestroyImage(device_->allocator(), image_, allocation_);
 }

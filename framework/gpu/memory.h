@@ -17,9 +17,36 @@ enum class Residency : uint8_t {
   Readback,  ///< GPU writes, host reads; persistently mapped, cached
 };
 
+/// What a buffer or an image asks of the memory it lies in; `kinds` is a mask of memory types. Rounded up so that
+/// buffers and images may lie side by side.
+struct MemoryNeeds {
+  uint64_t bytes = 0, alignment = 1;
+  uint32_t kinds = 0;
+};
+
+/// Device memory that several buffers and images lie in, also over each other.
+class Memory {
+ public:
+  Memory() = default;
+  Memory(const Device& device, const MemoryNeeds& needs, const std::string& name);
+  ~Memory();
+  Memory(Memory&& other) noexcept;
+  Memory& operator=(Memory&& other) noexcept;
+  VmaAllocation allocation() const { return allocation_; }
+
+ private:
+  const Device* device_ = nullptr;
+  VmaAllocation allocation_ = nullptr;
+};
+
 class Buffer {
  public:
   Buffer() = default;
+  /// In memory that is somebody else's; it must outlive the buffer.
+  Buffer(const Device& device, uint64_t size, VkBufferUsageFlags usage, const Memory& memory, uint64_t offset,
+         const std::string& name);
+  /// Somebody else's buffer, never freed here.
+  static Buffer borrowed(VkBuffer buffer, uint64_t size);
   /// `size` 0 makes a 16-byte buffer, so that there is always something to bind.
   Buffer(const Device& device, uint64_t size, VkBufferUsageFlags usage, Residency residency, const std::string& name,
          uint64_t alignment = 0);
@@ -57,6 +84,10 @@ class Image {
  public:
   Image() = default;
   Image(const Device& device, const ImageDesc& desc, const std::string& name);
+  /// In memory that is somebody else's; it must outlive the image.
+  Image(const Device& device, const ImageDesc& desc, const Memory& memory, uint64_t offset, const std::string& name);
+  /// Somebody else's image with a view of it, never freed here.
+  static Image borrowed(VkImage image, VkImageView view, const ImageDesc& desc);
   ~Image();
   Image(Image&& other) noexcept;
   Image& operator=(Image&& other) noexcept;
@@ -72,10 +103,14 @@ class Image {
   const Device* device_ = nullptr;
   VkImage image_ = VK_NULL_HANDLE;
   VkImageView view_ = VK_NULL_HANDLE;
+  void makeView(const std::string& name);
   VmaAllocation allocation_ = nullptr;
   ImageDesc desc_;
   uint64_t bytes_ = 0;
 };
+
+MemoryNeeds bufferNeeds(const Device& device, uint64_t size, VkBufferUsageFlags usage);
+MemoryNeeds imageNeeds(const Device& device, const ImageDesc& desc);
 
 /// Device-local buffer filled with `bytes` through a staging copy; waits. `usage` gets TRANSFER_DST added.
 Buffer uploadBuffer(const Device& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage,

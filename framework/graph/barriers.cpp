@@ -1,5 +1,4 @@
-// Barriers for a frame that follows another frame of the same graph. The first frame, and one after a clear, need no
-// more.
+// What each pass waits for, in a frame that follows another frame of the same graph.
 //
 // A resource has one producer, which writes it before anybody reads it in the frame. So a copy goes through these
 // phases:
@@ -7,48 +6,221 @@
 //   without history      | write ─► reads                       | write (next frame) …
 //   with, two copies     | write ─► reads ─► reads as previous  | write (the frame after the next) …
 //
-// Before the first read of a phase, the write must be visible; later reads of the same phase come after that barrier.
-// Before the write, whatever the copy was last used for must be over.
+// and where memory is shared, the last reads of whoever had it stand before the write too.
+//
+// A memory barrier is global: it holds for everything that its stages did, not for one resource. So a dependency from
+// pass A to pass B is an interval of time, a barrier a point in it, and the fewest barriers are the fewest points that
+// every interval contains one of: going through the frame, one is placed where an interval ends that has none yet.
 #include <weir/graph/checked.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <tuple>
 
 namespace weir::graph {
 namespace {
 
-/// Which passes read a resource. Whoever reads an output from outside brings barriers of his own, before and after:
-/// whether there is anybody is not known here, and a barrier after reads that did not happen would leave the last write
-/// pending.
-struct Use {
-  bool read = false;                                 ///< in this frame or in the next
-  bool visibleNow = false, visiblePrevious = false;  ///< while planning: the barrier is placed
+constexpr std::array<Stages, 3> kStages = {kComputeStage, kRayStage, kRasterStage};
+
+/// Lists the dependencies of every pass.
+class Hazards {
+ public:
+  explicit Hazards(CompiledGraph& graph) : graph_(graph), readers_(graph.resources.size()), later_(readers_.size()) {
+    for (uint32_t p = 0; p < graph.passes.size(); ++p)
+      for (const Binding& input : graph.passes[p].inputs)
+        if (input.resource != kNone) addOnce((input.previous ? later_ : readers_)[input.resource], p);
+    for (uint32_t r = 0; r < graph.resources.size(); ++r)
+      if (graph.resources[r].shares) sharing_.push_back(r);
+  }
+
+  void list(uint32_t pass) {
+    CompiledPass& p = graph_.passes[pass];
+    p.dependencies.clear();
+    for (const Binding& input : p.inputs) {
+      if (input.resource == kNone) continue;
+      const uint32_t producer = graph_.resources[input.resource].producer;
+      if (producer != kNone)
+        p.dependencies.push_back(
+            {Hazard::ReadAfterWrite, input.resource, input.resource, producer, input.previous ? 1u : 0u});
+    }
+    for (const Binding& output : p.outputs) beforeWriting(p, output.resource);
+    for (const uint32_t scratch : p.scratch) beforeWriting(p, scratch);
+  }
+
+ private:
+  static void addOnce(std::vector<uint32_t>& list, uint32_t pass) {
+    if (list.empty() || list.back() != pass) list.push_back(pass);
+  }
+
+  void beforeWriting(CompiledPass& p, uint32_t resource) {
+    const Resource& r = graph_.resources[resource];
+    if (r.external) return;  // the host comes before and after
+    usesOf(p, resource, resource, r.history ? 2 : 1);
+    for (const uint32_t reader : later_[resource])
+      p.dependencies.push_back({Hazard::WriteAfterRead, resource, resource, reader, 1});
+    if (!r.shares) return;
+    for (const uint32_t other : sharing_) {
+      const Resource& o = graph_.resources[other];
+      if (other != resource && shareMemory(r, o)) usesOf(p, resource, other, o.lastUse < r.firstUse ? 0 : 1);
+    }
+  }
+
+  /// All uses of `had` in that frame must be over before `wanted` is written.
+  void usesOf(CompiledPass& p, uint32_t wanted, uint32_t had, uint32_t framesBack) {
+    // Reads came after a barrier that made the write visible, so that once they are over the write is too.
+    for (const uint32_t reader : readers_[had])
+      p.dependencies.push_back({Hazard::WriteAfterRead, wanted, had, reader, framesBack});
+    if (readers_[had].empty() && (later_[had].empty() || wanted != had))
+      p.dependencies.push_back({Hazard::WriteAfterWrite, wanted, had, graph_.resources[had].producer, framesBack});
+  }
+
+  CompiledGraph& graph_;
+  std::vector<std::vector<uint32_t>> readers_, later_;  ///< by resource: passes that read it, now and as previous
+  std::vector<uint32_t> sharing_;
+};
+
+/// An image that takes over memory has a barrier of its own, which covers all that it depends on.
+void startImages(CompiledGraph& graph, CompiledPass& p) {
+  p.starts.clear();
+  for (Dependency& d : p.dependencies) {
+    const Resource& r = graph.resources[d.resource];
+    if (d.hazard == Hazard::ReadAfterWrite || !r.shares || !r.isImage()) continue;
+    d.covered = true;
+    if (p.starts.empty() || p.starts.back().resource != d.resource) p.starts.push_back({d.resource});
+    p.starts.back().from |= graph.passes[d.pass].stages;
+    p.starts.back().writes |= d.hazard == Hazard::WriteAfterWrite;
+  }
+}
+
+/// Times count passes since the first frame; a barrier at time t stands before the pass of that time.
+using Time = int64_t;
+constexpr Time kNever = std::numeric_limits<Time>::min();
+
+/// Barriers from one stage to another. Each stronger kind orders as well.
+struct Last {
+  Time order = kNever, read = kNever, write = kNever;
+};
+
+class Placement {
+ public:
+  explicit Placement(CompiledGraph& graph) : graph_(graph), passes_(static_cast<Time>(graph.passes.size())) {}
+
+  /// The barriers of one frame, given those of the frames before it. True when they are the same as the frame before's.
+  bool frame() {
+    bool same = true;
+    for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
+      std::vector<Wait> before = std::move(graph_.passes[p].waits);
+      place(p);
+      same = same && before == graph_.passes[p].waits;
+    }
+    ++frame_;
+    return same;
+  }
+  void forget() { last_ = {}; }
+
+ private:
+  Time time(uint32_t pass, uint32_t framesBack) const { return (frame_ - framesBack) * passes_ + pass; }
+
+  void place(uint32_t index) {
+    CompiledPass& p = graph_.passes[index];
+    p.waits.clear();
+    const Time now = time(index, 0);
+    // Barriers that carry data first: they order too, so that what only needs order finds it done.
+    for (const bool carries : {true, false})
+      for (Dependency& d : p.dependencies) {
+        if ((d.hazard != Hazard::WriteAfterRead) != carries || isStart(d)) continue;
+        d.covered = true;
+        for (size_t from = 0; from < kStages.size(); ++from)
+          for (size_t to = 0; to < kStages.size(); ++to)
+            if ((graph_.passes[d.pass].stages & kStages[from]) != 0 && (p.stages & kStages[to]) != 0)
+              d.covered &= contains(d, last_[from][to], now) || !add(p, d.hazard, from, to, now);
+      }
+    merge(p);
+  }
+
+  bool isStart(const Dependency& d) const {
+    const Resource& r = graph_.resources[d.resource];
+    return d.hazard != Hazard::ReadAfterWrite && r.shares && r.isImage();
+  }
+
+  /// Whether there is a barrier within the dependency, of an earlier pass or of this one.
+  bool contains(const Dependency& d, const Last& last, Time now) const {
+    const Time after = time(d.pass, d.framesBack), at = d.hazard == Hazard::ReadAfterWrite    ? last.read
+                                                        : d.hazard == Hazard::WriteAfterWrite ? last.write
+                                                                                              : last.order;
+    return at > after && at < now;
+  }
+
+  /// Always true: the barrier stands before this very pass, so that the dependency is not covered by another's.
+  bool add(CompiledPass& p, Hazard hazard, size_t from, size_t to, Time now) {
+    Last& last = last_[from][to];
+    const bool order = hazard == Hazard::WriteAfterRead;
+    if (order && last.order == now) return true;
+    last.order = now;
+    if (hazard == Hazard::ReadAfterWrite) last.read = now;
+    if (hazard == Hazard::WriteAfterWrite) last.write = now;
+    p.waits.push_back(
+        {kStages[from], kStages[to], !order, hazard == Hazard::ReadAfterWrite, hazard == Hazard::WriteAfterWrite});
+    return true;
+  }
+
+  /// One barrier for each set of stages that waits in the same way.
+  static void merge(CompiledPass& p) {
+    std::vector<Wait> merged;
+    const auto into = [&](const Wait& w, auto alike, auto join) {
+      const auto found = std::find_if(merged.begin(), merged.end(), [&](const Wait& m) { return alike(m, w); });
+      if (found == merged.end())
+        merged.push_back(w);
+      else
+        join(*found, w);
+    };
+    for (const Wait& w : p.waits)
+      into(
+          w, [](const Wait& m, const Wait& o) { return m.from == o.from && m.to == o.to; },
+          [](Wait& m, const Wait& o) {
+            m.writes |= o.writes;
+            m.toReads |= o.toReads;
+            m.toWrites |= o.toWrites;
+          });
+    std::vector<Wait> atoms = std::move(merged);
+    merged.clear();
+    for (const Wait& w : atoms)
+      into(
+          w,
+          [](const Wait& m, const Wait& o) {
+            return std::tie(m.to, m.writes, m.toReads, m.toWrites) == std::tie(o.to, o.writes, o.toReads, o.toWrites);
+          },
+          [](Wait& m, const Wait& o) { m.from |= o.from; });
+    p.waits = std::move(merged);
+  }
+
+  CompiledGraph& graph_;
+  Time passes_, frame_ = 0;
+  std::array<std::array<Last, kStages.size()>, kStages.size()> last_{};
 };
 
 }  // namespace
 
 void planBarriers(CompiledGraph& graph) {
-  std::vector<Use> uses(graph.resources.size());
-  for (const CompiledPass& pass : graph.passes)
-    for (const Binding& input : pass.inputs)
-      if (input.resource != kNone) uses[input.resource].read = true;
-
-  for (CompiledPass& pass : graph.passes) {
-    pass.barriers.clear();
-    for (const Binding& input : pass.inputs) {
-      if (input.resource == kNone) continue;
-      Use& use = uses[input.resource];
-      bool& visible = input.previous ? use.visiblePrevious : use.visibleNow;
-      if (visible) continue;
-      visible = true;
-      const uint32_t from = input.previous ? kNone : graph.resources[input.resource].producer;
-      pass.barriers.push_back({input.resource, input.previous, Access::Write, Access::Read, from});
-    }
-    for (const Binding& output : pass.outputs) {
-      // Reads came after a barrier that made the write visible, so that once they are over the write is too.
-      const Access before = uses[output.resource].read ? Access::Read : Access::Write;
-      pass.barriers.push_back({output.resource, false, before, Access::Write, kNone});
-    }
+  Hazards hazards(graph);
+  for (uint32_t p = 0; p < graph.passes.size(); ++p) {
+    hazards.list(p);
+    startImages(graph, graph.passes[p]);
+    graph.passes[p].waits.clear();
   }
+  // What stands in a frame depends on what stood in the one before. It settles after a frame or two; should it ever
+  // not, a frame that trusts only its own barriers is right as well.
+  Placement placement(graph);
+  constexpr int kTries = 8;
+  // Dependencies reach two frames back, so that three have to be alike.
+  for (int i = 0, alike = 0; i < kTries; ++i) {
+    alike = placement.frame() ? alike + 1 : 0;
+    if (alike == 2) return;
+  }
+  placement.forget();
+  placement.frame();
 }
 
 }  // namespace weir::graph

@@ -16,6 +16,7 @@ struct Source {
   uint32_t node = kNone;
   uint32_t output = kNone;  ///< kNone with a node: the pass is known, its port is not
   bool previous = false;
+  uint32_t provided = kNone;  ///< the host's: index into Checked::provided
   bool known() const { return node != kNone && output != kNone; }
 };
 
@@ -62,6 +63,7 @@ class Findings {
 struct Checked {
   std::vector<Node> nodes;  ///< by name
   std::vector<OutputLink> outputs;
+  std::vector<Source> provided;  ///< ports whose content the host brings
 
   const PortDescription& port(const Source& source) const { return nodes[source.node].type->outputs[source.output]; }
   /// "pass.port" or "pass.port@previous".
@@ -85,7 +87,7 @@ struct Order {
 };
 Order orderPasses(const Checked& checked);
 /// Passes, resources, bindings, outputs.
-void plan(const Checked& checked, const Order& order, CompiledGraph& graph, Findings& findings);
-void planBarriers(CompiledGraph& graph);
+void plan(const Checked& checked, const Order& order, const CompileOptions& options, CompiledGraph& graph,
+          Findings& findings);
 
 }  // namespace weir::graph

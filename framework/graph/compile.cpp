@@ -1,3 +1,5 @@
+#include <weir/core/error.h>
+#include <weir/core/text.h>
 #include <weir/graph/checked.h>
 
 #include <fmt/format.h>
@@ -16,6 +18,46 @@ void checkFrameSize(uint32_t width, uint32_t height, Findings& findings) {
                "--size");
 }
 
+/// Marks what the host provides: readers of those ports have no producer to wait for.
+void markProvided(Checked& checked, const std::string& graph, const std::vector<std::string>& provided) {
+  std::vector<std::string> names;
+  for (const Node& node : checked.nodes)
+    if (node.type)
+      for (const PortDescription& port : node.type->outputs) names.push_back(node.name() + "." + port.name);
+  for (const std::string& name : provided) {
+    Source source;
+    const std::optional<Reference> reference = parseReference(name);
+    for (uint32_t n = 0; reference && n < checked.nodes.size(); ++n) {
+      if (checked.nodes[n].name() != reference->pass || !checked.nodes[n].type) continue;
+      const auto& outputs = checked.nodes[n].type->outputs;
+      for (uint32_t o = 0; o < outputs.size(); ++o)
+        if (outputs[o].name == reference->port) source = {n, o, reference->previous};
+    }
+    if (!source.known()) {
+      const std::string nearest = nearestName(name, names);
+      throw InputError(fmt::format("provided: graph '{}' has no port '{}'{}", graph, name,
+                                   nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)));
+    }
+    checked.provided.push_back(source);
+  }
+  const auto mark = [&](Source& resolved, const std::string& reader) {
+    for (uint32_t i = 0; i < checked.provided.size(); ++i) {
+      const Source& p = checked.provided[i];
+      if (resolved.node != p.node || resolved.output != p.output) continue;
+      if (resolved.previous == p.previous) resolved.provided = i;
+    }
+    if (!resolved.previous || resolved.provided != kNone) return;
+    for (const Source& p : checked.provided)
+      if (!p.previous && p.node == resolved.node && p.output == resolved.output)
+        throw InputError(
+            fmt::format("provided: '{}' comes from the host, and '{}' reads its @previous: provide '{}' too",
+                        checked.text(p), reader, checked.text(resolved)));
+  };
+  for (Node& node : checked.nodes)
+    for (Link& link : node.links) mark(link.resolved, node.name());
+  for (OutputLink& output : checked.outputs) mark(output.resolved, output.entry->name);
+}
+
 }  // namespace
 
 const GraphOutput* CompiledGraph::findOutput(const std::string& outputName) const {
@@ -24,34 +66,53 @@ const GraphOutput* CompiledGraph::findOutput(const std::string& outputName) cons
   return found == outputs.end() ? nullptr : &*found;
 }
 
-CompiledGraph compile(const Description& description, const PassCatalog& catalog, uint32_t width, uint32_t height,
+CompiledGraph compile(const Description& description, const PassCatalog& catalog, const CompileOptions& options,
                       std::vector<Diagnostic>& diagnostics) {
   CompiledGraph graph;
   graph.name = description.name;
   graph.file = description.file;
-  graph.width = width;
-  graph.height = height;
+  graph.width = options.width;
+  graph.height = options.height;
   Findings findings(description.file, diagnostics);
   if (description.broken) return graph;
-  checkFrameSize(width, height, findings);
+  checkFrameSize(options.width, options.height, findings);
   Checked checked = bind(description, catalog, findings);
   resolve(checked, findings);
+  if (!options.provided.empty()) markProvided(checked, description.name, options.provided);
   matchPorts(checked, findings);
   findCycles(checked, findings);
   if (description.outputs.empty() && !findings.any())
     findings.add(0, "outputs", "there is no output; expected at least one");
   if (findings.any()) return graph;
-  plan(checked, orderPasses(checked), graph, findings);
-  if (!findings.any()) planBarriers(graph);
+  plan(checked, orderPasses(checked), options, graph, findings);
+  if (findings.any()) return graph;
+  planMemory(graph, logicalNeeds(graph));
+  planBarriers(graph);
   return graph;
+}
+
+CompiledGraph compile(const Description& description, const PassCatalog& catalog, uint32_t width, uint32_t height,
+                      std::vector<Diagnostic>& diagnostics) {
+  CompileOptions options;
+  options.width = width;
+  options.height = height;
+  return compile(description, catalog, options, diagnostics);
 }
 
 CompiledGraph compileFile(const std::string& path, const Overrides& overrides, const PassCatalog& catalog,
                           uint32_t width, uint32_t height) {
+  CompileOptions options;
+  options.width = width;
+  options.height = height;
+  return compileFile(path, overrides, catalog, options);
+}
+
+CompiledGraph compileFile(const std::string& path, const Overrides& overrides, const PassCatalog& catalog,
+                          const CompileOptions& options) {
   std::vector<Diagnostic> diagnostics;
   Description description = load(path, diagnostics);
   apply(description, overrides, diagnostics);
-  CompiledGraph graph = compile(description, catalog, width, height, diagnostics);
+  CompiledGraph graph = compile(description, catalog, options, diagnostics);
   if (diagnostics.empty()) return graph;
   // In the file's order, which is how somebody will go through them.
   std::stable_sort(diagnostics.begin(), diagnostics.end(), [](const Diagnostic& a, const Diagnostic& b) {

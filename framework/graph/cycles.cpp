@@ -25,7 +25,9 @@ class CycleFinder {
       for (const Link& link : checked.nodes[n].links) {
         if (checked.nodes[n].type && link.input == kNone) continue;  // an input that does not exist reads nothing
         const Source& source = link.resolved;
-        if (source.node == kNone || source.previous || !seen.insert({source.node, n}).second) continue;
+        if (source.node == kNone || source.previous || source.provided != kNone ||
+            !seen.insert({source.node, n}).second)
+          continue;
         leaving_[source.node].push_back(edges_.size());
         edges_.push_back({source.node, n, &link});
       }

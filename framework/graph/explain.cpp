@@ -43,13 +43,14 @@ class Explainer {
 
   void pass(uint32_t index) {
     const CompiledPass& p = graph_.passes[index];
-    say("{:>3}. {} ({})\n", index + 1, p.name, p.type);
+    say("{:>3}. {} ({}), {}\n", index + 1, p.name, p.type, stagesText(p.stages));
     for (const Binding& input : p.inputs) {
       if (input.resource == kNone)
         say("       in   {} <- nothing (optional)\n", input.port);
       else
         say("       in   {} <- {}\n", input.port, name(input.resource, input.previous));
     }
+    for (const uint32_t scratch : p.scratch) say("       own  {}\n", graph_.resources[scratch].name);
     for (const Binding& output : p.outputs) say("       out  {} -> {}\n", output.port, readers(output.resource));
     if (p.description && !p.description->wants.empty()) {
       say("       takes");
@@ -64,7 +65,35 @@ class Explainer {
         say("{}{} = {}", std::exchange(separator, ", "), param, weir::toText(value));
       say("\n");
     }
-    for (const Barrier& b : p.barriers) say("       wait {}\n", barrierText(b));
+    barriers(p);
+  }
+
+  static std::string stagesText(Stages stages) {
+    std::vector<std::string> names;
+    if ((stages & kComputeStage) != 0) names.emplace_back("compute");
+    if ((stages & kRayStage) != 0) names.emplace_back("rays");
+    if ((stages & kRasterStage) != 0) names.emplace_back("raster");
+    return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, "+"));
+  }
+
+  /// What the pass waits for and was not waited for before; how much more there was; and the barriers that do it.
+  void barriers(const CompiledPass& p) {
+    size_t covered = 0;
+    for (const Dependency& d : p.dependencies) {
+      const bool start =
+          std::any_of(p.starts.begin(), p.starts.end(), [&](const ImageStart& s) { return s.resource == d.resource; });
+      if (d.covered && !(start && d.hazard != Hazard::ReadAfterWrite))
+        ++covered;
+      else
+        say("       wait {}\n", dependencyText(d));
+    }
+    if (covered > 0) say("       wait for {} more: earlier barriers see to it\n", covered);
+    for (const Wait& w : p.waits)
+      say("       barrier {}{} -> {}{}{}\n", stagesText(w.from), w.writes ? " writes" : "", stagesText(w.to),
+          w.toReads ? " reads" : "", w.toWrites ? " writes" : "");
+    for (const ImageStart& s : p.starts)
+      say("       barrier {}{} -> {}: {} starts undefined\n", stagesText(s.from), s.writes ? " writes" : "",
+          stagesText(p.stages), graph_.resources[s.resource].name);
   }
 
   std::string readers(uint32_t resource) const {
@@ -80,32 +109,57 @@ class Explainer {
     return text.empty() ? "nobody" : text;
   }
 
-  std::string barrierText(const Barrier& b) const {
-    const std::string what = name(b.resource, b.previous);
-    const bool reads = b.after == Access::Read;
-    if (b.fromPass != kNone)
-      return fmt::format("until what {} wrote to {} can be read", graph_.passes[b.fromPass].name, what);
-    if (reads) return fmt::format("until what an earlier frame (or the clear) wrote to {} can be read", what);
-    return fmt::format("until an earlier frame has stopped {} the memory of {}",
-                       b.before == Access::Read ? "reading" : "writing", what);
+  std::string dependencyText(const Dependency& d) const {
+    static constexpr const char* kWhen[] = {"", " in the last frame", " two frames ago"};
+    const std::string& who = graph_.passes[d.pass].name;
+    const std::string& what = graph_.resources[d.memoryOf].name;
+    const char* when = kWhen[d.framesBack];
+    if (d.hazard == Hazard::ReadAfterWrite)
+      return fmt::format("until {} can be read, which {} wrote{}", what, who, when);
+    const char* did = d.hazard == Hazard::WriteAfterRead ? "reading" : "writing";
+    if (d.memoryOf == d.resource) return fmt::format("until {} is done {} {}{}", who, did, what, when);
+    return fmt::format("until {} is done {} {}{}, whose memory {} takes over", who, did, what, when,
+                       graph_.resources[d.resource].name);
+  }
+
+  static std::string extentText(const Resource& r) {
+    if (r.width == 0) return fmt::format("{}", r.elements);
+    if (r.perPixel == 1) return fmt::format("{}x{}", r.width, r.height);
+    return fmt::format("{}x{}x{}", r.width, r.height, r.perPixel);
+  }
+
+  std::string placeText(const Resource& r) const {
+    if (r.external) return "the host's";
+    if (r.history) return "two copies of its own: history";
+    if (r.block == kNone) return "its own";
+    return fmt::format("{}{}{}{}", graph_.blocks.size() > 1 ? fmt::format("block {} ", r.block + 1) : "at ",
+                       bytesText(r.offset), r.shares ? ", shared" : "",
+                       r.graphOutput ? "; output" : (r.kept ? "; kept" : ""));
   }
 
   void resources() {
-    say("\nResources\n  {:<26} {:<44} {:>12} {:>10} {:>7}  {}\n", "name", "type", "extent", "bytes", "copies",
-        "alive in passes");
-    uint64_t transient = 0, history = 0;
+    say("\nResources: # marks the passes that each is alive in\n  {:<26} {:<36} {:>12} {:>10}  ", "name", "type",
+        "extent", "bytes");
+    for (size_t p = 0; p < graph_.passes.size(); ++p) say("{}", (p + 1) % 10);
+    say("  memory\n");
     for (const Resource& r : graph_.resources) {
-      const std::string extent = r.width == 0      ? fmt::format("{}", r.elements)
-                                 : r.perPixel == 1 ? fmt::format("{}x{}", r.width, r.height)
-                                                   : fmt::format("{}x{}x{}", r.width, r.height, r.perPixel);
-      const std::string life = r.history       ? "always: history"
-                               : r.graphOutput ? fmt::format("{} to the end: output", r.firstUse + 1)
-                                               : fmt::format("{} to {}", r.firstUse + 1, r.lastUse + 1);
-      say("  {:<26} {:<44} {:>12} {:>10} {:>7}  {}\n", r.name, typeText(r.type), extent, bytesText(r.bytes),
-          r.history ? 2 : 1, life);
-      (r.history ? history : transient) += r.bytes * (r.history ? 2 : 1);
+      std::string life(graph_.passes.size(), '.');
+      for (size_t p = r.firstUse; p <= r.lastUse && p < life.size(); ++p) life[p] = '#';
+      if (r.history) std::fill(life.begin(), life.end(), '#');
+      say("  {:<26} {:<36} {:>12} {:>10}  {}  {}\n", r.name, typeText(r.type), extentText(r), bytesText(r.bytes), life,
+          placeText(r));
     }
-    say("  in all {} in one copy, {} in two for history\n", bytesText(transient), bytesText(history));
+    const uint64_t shared = graph_.sharedBytes(), separate = graph_.separateBytes();
+    if (graph_.blocks.empty()) {
+      say("  {} in memory of their own, {} in two copies for history\n", bytesText(separate),
+          bytesText(graph_.historyBytes()));
+      return;
+    }
+    say("  {} shared by what would take {} apart: {} saved, {:.0f} %. Most alive at once: {}\n", bytesText(shared),
+        bytesText(separate), bytesText(separate - shared),
+        separate > 0 ? 100.0 * static_cast<double>(separate - shared) / static_cast<double>(separate) : 0.0,
+        bytesText(graph_.mostAlive()));
+    say("  {} in two copies for history\n", bytesText(graph_.historyBytes()));
   }
 
   static std::string typeText(const PortType& type) {

@@ -15,7 +15,7 @@ std::vector<bool> findLive(const Checked& checked) {
   std::vector<bool> live(checked.nodes.size(), false);
   std::vector<uint32_t> open;
   const auto reach = [&](const Source& source) {
-    if (source.node == kNone || live[source.node]) return;
+    if (source.node == kNone || source.provided != kNone || live[source.node]) return;
     live[source.node] = true;
     open.push_back(source.node);
   };
@@ -43,8 +43,11 @@ std::string unreadReason(const Checked& checked, uint32_t unread) {
   std::vector<std::string> readers;
   for (const Node& node : checked.nodes)
     for (const Link& link : node.links)
-      if (link.resolved.node == unread && (readers.empty() || readers.back() != node.name()))
+      if (link.resolved.node == unread && link.resolved.provided == kNone &&
+          (readers.empty() || readers.back() != node.name()))
         readers.push_back(node.name());
+  for (const Source& provided : checked.provided)
+    if (provided.node == unread) return "the host provides what is read of it";
   if (readers.empty()) return "nothing reads it";
   return fmt::format("no output depends on it: only {} read{} it, and {} skipped too", listed(readers),
                      readers.size() == 1 ? "s" : "", readers.size() == 1 ? "is" : "are");
@@ -58,7 +61,7 @@ Order orderPasses(const Checked& checked) {
   std::vector<std::vector<uint32_t>> readers(checked.nodes.size());
   for (uint32_t n = 0; n < checked.nodes.size(); ++n)
     for (const Link& link : checked.nodes[n].links)
-      if (live[n] && link.resolved.node != kNone && !link.resolved.previous) {
+      if (live[n] && link.resolved.node != kNone && !link.resolved.previous && link.resolved.provided == kNone) {
         readers[link.resolved.node].push_back(n);
         ++waitsFor[n];
       }

@@ -1,4 +1,5 @@
 // Resources with their sizes and lifetimes, and what each pass binds.
+#include <weir/core/error.h>
 #include <weir/core/text.h>
 #include <weir/graph/checked.h>
 
@@ -20,16 +21,18 @@ uint32_t scaled(uint32_t size, const PortType& type) {
 
 class Planner {
  public:
-  Planner(const Checked& checked, const Order& order, CompiledGraph& graph, Findings& findings)
-      : checked_(checked), order_(order), graph_(graph), findings_(findings) {}
+  Planner(const Checked& checked, const Order& order, const CompileOptions& options, CompiledGraph& graph,
+          Findings& findings)
+      : checked_(checked), order_(order), options_(options), graph_(graph), findings_(findings) {}
 
   void plan() {
     resourceOf_.resize(checked_.nodes.size());
     for (uint32_t p = 0; p < order_.nodes.size(); ++p) addPass(p);
+    for (const Source& source : checked_.provided) addProvided(source);
     // After all resources are there: history is read by passes that come before its producer.
     for (uint32_t p = 0; p < order_.nodes.size(); ++p) bindInputs(p);
     for (const OutputLink& link : checked_.outputs) {
-      GraphOutput output{link.entry->name, resource(link.resolved), link.resolved.previous};
+      GraphOutput output{link.entry->name, resource(link.resolved), isPrevious(link.resolved)};
       Resource& r = graph_.resources[output.resource];
       r.graphOutput = true;
       r.history |= output.previous;
@@ -38,6 +41,9 @@ class Planner {
     std::sort(graph_.outputs.begin(), graph_.outputs.end(),
               [](const GraphOutput& a, const GraphOutput& b) { return a.name < b.name; });
     graph_.skipped = order_.skipped;
+    for (const std::string& name : options_.external) find(name, "external").external = true;
+    for (const std::string& name : options_.keep) find(name, "keep").kept = true;
+    if (!findings_.any()) endLives();
   }
 
  private:
@@ -48,6 +54,7 @@ class Planner {
     pass.type = node.entry->type;
     pass.description = node.type;
     pass.params = node.params;
+    pass.stages = node.type->has(Need::SceneAcceleration) ? kRayStage : kComputeStage;
     const uint64_t hash = fnv1a(node.name());
     pass.stream = static_cast<uint32_t>(hash ^ (hash >> 32));
     for (uint32_t o = 0; o < node.type->outputs.size(); ++o) {
@@ -59,12 +66,44 @@ class Planner {
     graph_.passes.push_back(std::move(pass));
   }
 
+  void addProvided(const Source& source) {
+    Resource r = makeResource(checked_.nodes[source.node], source.output, kNone);
+    if (source.previous) r.name += "@previous";
+    r.external = true;
+    r.firstUse = 0;
+    provided_.push_back(static_cast<uint32_t>(graph_.resources.size()));
+    graph_.resources.push_back(std::move(r));
+  }
+
+  Resource& find(const std::string& name, const char* what) {
+    std::vector<std::string> names;
+    for (Resource& r : graph_.resources) {
+      if (r.name == name && r.producer != kNone) return r;
+      names.push_back(r.name);
+    }
+    const std::string nearest = nearestName(name, names);
+    throw InputError(fmt::format("{}: graph '{}' has no resource '{}'{}", what, graph_.name, name,
+                                 nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)));
+  }
+
+  void endLives() {
+    if (graph_.passes.empty()) return;
+    const auto last = static_cast<uint32_t>(graph_.passes.size() - 1);
+    for (Resource& r : graph_.resources) {
+      r.kept |= options_.keepAll;
+      if (r.external && r.history)
+        throw InputError(fmt::format("external: '{}' has to be the graph's own, as its @previous is read", r.name));
+      if (r.kept || r.graphOutput) r.lastUse = last;
+    }
+  }
+
   Resource makeResource(const Node& node, uint32_t o, uint32_t producer) {
     const PortDescription& port = node.type->outputs[o];
     Resource r;
     r.name = node.name() + "." + port.name;
     r.type = port.type;
-    r.producer = r.firstUse = r.lastUse = producer;
+    r.producer = producer;
+    r.firstUse = r.lastUse = producer == kNone ? 0 : producer;
     if (port.type.fixedCount != 0) {
       r.elements = port.type.fixedCount;
     } else {
@@ -95,7 +134,7 @@ class Planner {
       binding.port = node.type->inputs[i].name;
       if (const Link* link = node.linkOf(i)) {
         binding.resource = resource(link->resolved);
-        binding.previous = link->resolved.previous;
+        binding.previous = isPrevious(link->resolved);
         Resource& r = graph_.resources[binding.resource];
         if (binding.previous)
           r.history = true;
@@ -106,19 +145,26 @@ class Planner {
     }
   }
 
-  uint32_t resource(const Source& source) const { return resourceOf_[source.node][source.output]; }
+  uint32_t resource(const Source& source) const {
+    return source.provided != kNone ? provided_[source.provided] : resourceOf_[source.node][source.output];
+  }
+  /// What the host provides has no past that the graph keeps.
+  static bool isPrevious(const Source& source) { return source.previous && source.provided == kNone; }
 
   const Checked& checked_;
   const Order& order_;
+  const CompileOptions& options_;
   CompiledGraph& graph_;
   Findings& findings_;
   std::vector<std::vector<uint32_t>> resourceOf_;  ///< by node and output
+  std::vector<uint32_t> provided_;                 ///< resources, as in Checked::provided
 };
 
 }  // namespace
 
-void plan(const Checked& checked, const Order& order, CompiledGraph& graph, Findings& findings) {
-  Planner(checked, order, graph, findings).plan();
+void plan(const Checked& checked, const Order& order, const CompileOptions& options, CompiledGraph& graph,
+          Findings& findings) {
+  Planner(checked, order, options, graph, findings).plan();
 }
 
 }  // namespace weir::graph

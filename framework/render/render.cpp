@@ -120,10 +120,10 @@ RunFacts::Environment environmentFacts(const Stage& stage) {
 
 /// Renders one frame of `executor` with rays counted, after as many as give the history its usual length.
 uint64_t countRays(const gpu::Device& device, shader::Compiler& compiler, Registry& registry,
-                   const scene::SceneGpu& scene, const execute::Executor& timed, execute::ExecutorOptions options,
+                   const scene::SceneGpu& scene, const graph::CompiledGraph& graph, execute::ExecutorOptions options,
                    const Stage& stage, uint32_t frames) {
   options.countRays = true;
-  execute::Executor executor(device, compiler, registry, scene, timed.graph(), options);
+  execute::Executor executor(device, compiler, registry, scene, graph, options);
   Player player(stage);
   for (uint32_t f = 0; f < std::min(frames, 3u); ++f) executor.frame(player.frame(f, 0));
   executor.finish();
@@ -150,7 +150,8 @@ void render(const RenderOptions& o) {
   checkOptions(o);
   const Clock::time_point begin = Clock::now();
   Registry registry(pluginSearchPath(o.pluginPaths));
-  graph::CompiledGraph compiled = graph::compileFile(o.graph, withExposure(o), registry.catalog(), o.width, o.height);
+  const graph::CompiledGraph compiled =
+      graph::compileFile(o.graph, withExposure(o), registry.catalog(), o.width, o.height);
   const std::vector<std::string> names = wanted(o, compiled);
 
   const Stage stage = makeStage(o.stage, static_cast<float>(o.width) / static_cast<float>(o.height));
@@ -174,7 +175,7 @@ void render(const RenderOptions& o) {
   execute::ExecutorOptions executorOptions;
   executorOptions.backend = backend;
   executorOptions.sceneFolder = std::filesystem::path(o.stage.scene).parent_path().string();
-  execute::Executor executor(device, compiler, registry, scene, std::move(compiled), executorOptions);
+  execute::Executor executor(device, compiler, registry, scene, compiled, executorOptions);
   facts.compileSeconds = secondsSince(start);
 
   Player player(stage);
@@ -192,6 +193,7 @@ void render(const RenderOptions& o) {
       if (f + o.average >= o.frames) {
         for (const std::string& name : names) window[name].add(executor.read(name));
       }
+      for (execute::FrameTimes& t : executor.takeTimes()) times.push_back(std::move(t));
       if (o.progress) o.progress(uint64_t{r} * o.frames + f + 1, uint64_t{o.restarts} * o.frames);
     }
     executor.finish();
@@ -227,7 +229,8 @@ void render(const RenderOptions& o) {
     facts.sceneBytes = scene.bytes() + executor.motionBytes();
     facts.transientBytes = executor.transientBytes();
     facts.historyBytes = executor.historyBytes();
-    facts.rays = countRays(device, compiler, registry, scene, executor, executorOptions, stage, o.frames);
+    facts.savedBytes = executor.savedBytes();
+    facts.rays = countRays(device, compiler, registry, scene, compiled, executorOptions, stage, o.frames);
     writeTextFile(o.statistics, statisticsJson(executor.graph(), times, facts));
   }
   if (o.validation && !device.validationMessages().empty()) {

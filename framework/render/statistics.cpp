@@ -65,7 +65,7 @@ std::string statisticsJson(const graph::CompiledGraph& graph, const std::vector<
   j["memory"] = {{"transient_bytes", facts.transientBytes},
                  {"history_bytes", facts.historyBytes},
                  {"scene_bytes", facts.sceneBytes},
-                 {"aliased_saving_bytes", 0},
+                 {"aliased_saving_bytes", facts.savedBytes},
                  {"peak_host_bytes", facts.peakHostBytes}};
   j["rays"] = facts.rays;
   j["load_seconds"] = {{"read", facts.importTimes.read},     {"geometry", facts.importTimes.geometry},

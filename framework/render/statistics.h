@@ -21,7 +21,7 @@ struct RunFacts {
   double prepareSeconds = 0.0, uploadSeconds = 0.0, accelerationSeconds = 0.0, compileSeconds = 0.0;
   double firstFrameSeconds = 0.0;  ///< from the start to the end of the first frame
   uint64_t peakHostBytes = 0;      ///< most memory that the process has had
-  uint64_t sceneBytes = 0, transientBytes = 0, historyBytes = 0;
+  uint64_t sceneBytes = 0, transientBytes = 0, savedBytes = 0, historyBytes = 0;
   uint64_t rays = 0;  ///< of one frame
   struct Environment {
     std::string file;                                       ///< empty: none

@@ -46,6 +46,8 @@ class GraphRun {
     scene::Scene scene = {};
     graph::Overrides overrides = {};
     std::string shaders = sourcePath("tests/execute/shaders");
+    bool keepAll = true;  ///< every resource can be read after a frame; false: they share memory
+    bool poison = false;
   };
   /// `passes` is the graph's "passes", JSON, `output` a port of one of them; the entries' types are "own.<name>".
   GraphRun(const std::string& passes, const std::string& output, const std::vector<WeirPassEntry>& entries,
@@ -57,8 +59,11 @@ class GraphRun {
     std::vector<graph::Diagnostic> diagnostics;
     graph::Description description = graph::parse(json, "test", diagnostics);
     graph::apply(description, options.overrides, diagnostics);
-    graph::CompiledGraph compiled =
-        graph::compile(description, registry_.catalog(), options.width, options.height, diagnostics);
+    graph::CompileOptions compileOptions;
+    compileOptions.width = options.width;
+    compileOptions.height = options.height;
+    compileOptions.keepAll = options.keepAll;
+    graph::CompiledGraph compiled = graph::compile(description, registry_.catalog(), compileOptions, diagnostics);
     if (!diagnostics.empty()) throw graph::GraphError(diagnostics);
     source_ = std::move(options.scene);
     prepared_ = scene::prepareScene(source_);
@@ -66,6 +71,7 @@ class GraphRun {
         std::make_unique<scene::SceneGpu>(*device_, source_, prepared_, device_->capabilities().accelerationStructure);
     execute::ExecutorOptions executorOptions;
     executorOptions.backend = trace::chooseBackend("auto", *device_);
+    executorOptions.poison = options.poison;
     executor_ = std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(compiled),
                                                     executorOptions);
   }

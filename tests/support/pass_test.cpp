@@ -176,7 +176,11 @@ void PassTest::build() {
   std::vector<graph::Diagnostic> diagnostics;
   graph::Description description = graph::parse(json(), "pass test", diagnostics);
   graph::apply(description, {.set = sets_, .enable = {}, .disable = {}}, diagnostics);
-  graph::CompiledGraph compiled = graph::compile(description, m.registry.catalog(), width_, height_, diagnostics);
+  graph::CompileOptions compileOptions;
+  compileOptions.width = width_;
+  compileOptions.height = height_;
+  compileOptions.keepAll = true;  // inputs are filled before the frame, outputs are read after it
+  graph::CompiledGraph compiled = graph::compile(description, m.registry.catalog(), compileOptions, diagnostics);
   if (!diagnostics.empty()) throw graph::GraphError(diagnostics);
 
   m.prepared = scene::prepareScene(scene_, limits_, clip_.empty() ? nullptr : &scene::chooseClip(scene_, clip_));

@@ -1,0 +1,216 @@
+#include <fmt/format.h>
+#include <weir/core/error.h>
+#include <weir/core/text.h>
+#include <weir/execute/graph_runtime.h>
+#include <weir/gpu/barrier.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace weir::execute {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double milliseconds(Clock::time_point from) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - from).count();
+}
+
+uint64_t largestAllocation(const gpu::Device& device) {
+  VkPhysicalDeviceMaintenance3Properties limits{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+  properties.pNext = &limits;
+  vkGetPhysicalDeviceProperties2(device.physical(), &properties);
+  return limits.maxMemoryAllocationSize;
+}
+
+bool sameBinding(const graph::Binding& a, const graph::Binding& b) {
+  return a.port == b.port && a.resource == b.resource && a.previous == b.previous;
+}
+
+bool sameBindings(const std::vector<graph::Binding>& a, const std::vector<graph::Binding>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), sameBinding);
+}
+
+bool sameResource(const graph::Resource& a, const graph::Resource& b) {
+  return a.name == b.name && compatible(a.type, b.type) && a.width == b.width && a.height == b.height &&
+         a.elements == b.elements && a.bytes == b.bytes && a.history == b.history && a.external == b.external &&
+         a.firstUse == b.firstUse && a.lastUse == b.lastUse;
+}
+
+bool sameOutput(const graph::GraphOutput& a, const graph::GraphOutput& b) {
+  return a.name == b.name && a.resource == b.resource && a.previous == b.previous;
+}
+
+}  // namespace
+
+GraphRuntime::GraphRuntime(const Services& services, SceneFrame& scene, graph::CompiledGraph graph,
+                           const ExecutorOptions& options, const GraphRuntime* before)
+    : device_(*services.device),
+      scene_(scene),
+      graph_(std::move(graph)),
+      share_(options.shareMemory),
+      poison_(options.poison) {
+  shared_.services = services;
+  shared_.frame = &scene_;
+  shared_.graph = &graph_;
+  shared_.backend = scene.scene().hasAcceleration() ? options.backend : trace::Backend::None;
+  shared_.countRays = options.countRays;
+  shared_.sceneFolder = options.sceneFolder;
+  for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
+    passes_.push_back(std::make_unique<PassRuntime>(shared_, p));
+    graph_.passes[p].stages = passes_.back()->stages();
+  }
+  // Only now is it known what scratch memory there is and which stages passes run in.
+  planMemory(graph_, deviceNeeds(device_, graph_), share_, largestAllocation(device_));
+  planBarriers(graph_);
+  resources_ = std::make_unique<Resources>(device_, graph_, before ? before->resources_.get() : nullptr);
+  for (const graph::Resource& r : graph_.resources) external_ |= r.external;
+  for (const auto& pass : passes_) pass->bind(*resources_, external_);
+  makeBarriers();
+}
+
+GraphRuntime::~GraphRuntime() = default;
+
+bool GraphRuntime::update(const graph::CompiledGraph& graph) {
+  // Behind the graph's own resources stand the scratch resources that passes added here.
+  if (graph.width != graph_.width || graph.height != graph_.height || graph.passes.size() != graph_.passes.size() ||
+      graph.resources.size() > graph_.resources.size())
+    return false;
+  for (size_t r = 0; r < graph_.resources.size(); ++r) {
+    const graph::Resource& mine = graph_.resources[r];
+    if (r < graph.resources.size() ? mine.scratch || !sameResource(mine, graph.resources[r]) : !mine.scratch)
+      return false;
+  }
+  if (!std::equal(graph.outputs.begin(), graph.outputs.end(), graph_.outputs.begin(), graph_.outputs.end(), sameOutput))
+    return false;
+  for (size_t p = 0; p < passes_.size(); ++p) {
+    const graph::CompiledPass &mine = graph_.passes[p], &wanted = graph.passes[p];
+    if (mine.name != wanted.name || mine.type != wanted.type || mine.description != wanted.description ||
+        !sameBindings(mine.inputs, wanted.inputs) || !sameBindings(mine.outputs, wanted.outputs) ||
+        !passes_[p]->accepts(wanted))
+      return false;
+  }
+  for (size_t p = 0; p < passes_.size(); ++p) passes_[p]->take(graph.passes[p]);
+  return true;
+}
+
+void GraphRuntime::setExternal(const std::string& name, uint32_t slot, Storage storage) {
+  std::vector<std::string> names;
+  for (uint32_t r = 0; r < graph_.resources.size(); ++r) {
+    const graph::Resource& resource = graph_.resources[r];
+    if (!resource.external) continue;
+    names.push_back(resource.name);
+    if (resource.name != name) continue;
+    if (static_cast<bool>(storage.image) != resource.isImage())
+      throw InputError(fmt::format("'{}' is {}", name, describe(resource.type)));
+    resources_->setExternal(r, slot, std::move(storage));
+    for (const auto& pass : passes_) pass->rebind(*resources_, slot);
+    return;
+  }
+  const std::string nearest = nearestName(name, names);
+  throw InputError(fmt::format("graph '{}' expects no resource '{}' of the host{}", graph_.name, name,
+                               nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)));
+}
+
+void GraphRuntime::checkExternals(uint32_t slot) const {
+  for (uint32_t r = 0; r < graph_.resources.size(); ++r)
+    if (graph_.resources[r].external && !resources_->external(r, slot))
+      throw InputError(fmt::format("graph '{}' is recorded without the host's resource '{}' for slot {}", graph_.name,
+                                   graph_.resources[r].name, slot));
+}
+
+void GraphRuntime::makeBarriers() {
+  barriers_.resize(graph_.passes.size());
+  for (size_t p = 0; p < graph_.passes.size(); ++p) {
+    const graph::CompiledPass& pass = graph_.passes[p];
+    for (const graph::Wait& w : pass.waits) {
+      VkMemoryBarrier2& b = barriers_[p].memory.emplace_back(VkMemoryBarrier2{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2});
+      b.srcStageMask = vulkanStages(w.from);
+      b.srcAccessMask = w.writes ? writeAccess(w.from) : 0;
+      b.dstStageMask = vulkanStages(w.to);
+      b.dstAccessMask = (w.toReads ? readAccess(w.to) : 0) | (w.toWrites ? writeAccess(w.to) : 0);
+    }
+    for (const graph::ImageStart& s : pass.starts) {
+      VkImageMemoryBarrier2& b =
+          barriers_[p].images.emplace_back(toGeneral(resources_->at(s.resource, 0, false).image));
+      b.srcStageMask = vulkanStages(s.from);
+      b.srcAccessMask = s.writes ? writeAccess(s.from) : 0;
+      b.dstStageMask = vulkanStages(pass.stages);
+      b.dstAccessMask = readAccess(pass.stages) | writeAccess(pass.stages);
+    }
+  }
+}
+
+void GraphRuntime::beforePass(VkCommandBuffer commands, size_t pass) const {
+  const Barriers& b = barriers_[pass];
+  if (b.memory.empty() && b.images.empty()) return;
+  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  info.memoryBarrierCount = static_cast<uint32_t>(b.memory.size());
+  info.pMemoryBarriers = b.memory.data();
+  info.imageMemoryBarrierCount = static_cast<uint32_t>(b.images.size());
+  info.pImageMemoryBarriers = b.images.data();
+  vkCmdPipelineBarrier2(commands, &info);
+}
+
+void GraphRuntime::clearHistory(VkCommandBuffer commands) {
+  const VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  gpu::memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any, VK_PIPELINE_STAGE_2_TRANSFER_BIT, any);
+  resources_->clearHistory(commands, scene_.fresh());
+  gpu::memoryBarrier(commands, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any);
+}
+
+/// Before a pass what it is about to write, after it what it was the last to use.
+void GraphRuntime::poisonAround(VkCommandBuffer commands, uint32_t pass, bool before) const {
+  gpu::fullBarrier(commands);
+  for (uint32_t i = 0; i < graph_.resources.size(); ++i) {
+    const graph::Resource& r = graph_.resources[i];
+    const bool looked = r.graphOutput || r.kept;
+    if (!r.transient() || (before ? r.firstUse != pass : r.lastUse != pass || looked)) continue;
+    execute::poison(commands, resources_->at(i, 0, false), r);
+  }
+  gpu::fullBarrier(commands);
+}
+
+void GraphRuntime::record(VkCommandBuffer commands, const FrameInput& input, uint32_t slot, const Stamps& stamps) {
+  if (external_) checkExternals(slot);
+  const auto stamp = [&](size_t query) {
+    if (stamps.queries != VK_NULL_HANDLE)
+      vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, stamps.queries,
+                           static_cast<uint32_t>(query));
+  };
+  if (stamps.queries != VK_NULL_HANDLE)
+    vkCmdResetQueryPool(commands, stamps.queries, 0, static_cast<uint32_t>(passes_.size() + 2));
+  stamp(0);
+  device_.beginLabel(commands, graph_.name.c_str());
+  scene_.begin(commands, input, slot, graph_.width, graph_.height);
+  if (scene_.fresh() || resources_->hasFresh()) clearHistory(commands);
+  const FrameCursor cursor{commands, scene_.set(), SceneFrame::constantsOffset(slot), slot, scene_.parity()};
+  stamp(1);
+  for (uint32_t p = 0; p < passes_.size(); ++p) {
+    const Clock::time_point start = Clock::now();
+    device_.beginLabel(commands, graph_.passes[p].name.c_str());
+    beforePass(commands, p);
+    if (poison_) poisonAround(commands, p, true);
+    passes_[p]->record(cursor);
+    if (poison_) poisonAround(commands, p, false);
+    device_.endLabel(commands);
+    stamp(p + 2);
+    if (p < stamps.cpu.size()) stamps.cpu[p] = milliseconds(start);
+  }
+  device_.endLabel(commands);
+  scene_.end();
+}
+
+VkPipelineStageFlags2 GraphRuntime::stages() const {
+  graph::Stages all = 0;
+  for (const graph::CompiledPass& pass : graph_.passes) all |= pass.stages;
+  return vulkanStages(all);
+}
+
+std::vector<std::string> GraphRuntime::shaderFiles() const {
+  return {shared_.files.begin(), shared_.files.end()};
+}
+
+}  // namespace weir::execute

@@ -1,0 +1,81 @@
+// A compiled graph on a device: its memory, its passes, and the commands of a frame. Knows no queue: Executor submits
+// frames of its own, an embedding host records them into its own command buffers.
+#pragma once
+
+#include <weir/execute/pass_runtime.h>
+#include <weir/execute/scene_frame.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace weir::execute {
+
+struct ExecutorOptions {
+  trace::Backend backend = trace::Backend::None;
+  bool countRays = false;   ///< an atomic add a ray: for statistics, not for timing
+  std::string sceneFolder;  ///< what passes resolve relative files against
+  bool shareMemory = true;  ///< transient resources that live at different times share memory
+  bool poison = false;      ///< for tests: what is dead, or not yet written, is overwritten with rubbish
+};
+
+/// Where the times of a frame go; all of it may be left out.
+struct Stamps {
+  VkQueryPool queries = VK_NULL_HANDLE;  ///< passes + 2: start, start of the first pass, end of each
+  std::span<double> cpu;                 ///< milliseconds that recording each pass took
+};
+
+class GraphRuntime {
+ public:
+  /// Compiles every shader and allocates everything. `services` and `scene` must outlive this. What is the same in
+  /// `before` (history, pipelines) is taken over; `before` stays usable until then, so that a failure costs nothing.
+  GraphRuntime(const Services& services, SceneFrame& scene, graph::CompiledGraph graph, const ExecutorOptions& options,
+               const GraphRuntime* before = nullptr);
+  ~GraphRuntime();
+  GraphRuntime(const GraphRuntime&) = delete;
+  GraphRuntime& operator=(const GraphRuntime&) = delete;
+
+  /// With scratch memory, places and barriers as they are on this device.
+  const graph::CompiledGraph& graph() const { return graph_; }
+  const Resources& resources() const { return *resources_; }
+
+  /// Takes over the parameters of a graph that differs in nothing else, and in none that shaders are compiled with or
+  /// that a pass looked at when it prepared. False when it does: then a new runtime is needed.
+  bool update(const graph::CompiledGraph& graph);
+
+  /// Puts the host's storage in the place of an external resource, for frames of one slot that are not in flight.
+  /// InputError when there is no such resource.
+  void setExternal(const std::string& name, uint32_t slot, Storage storage);
+
+  /// The commands of one frame. `slot` < SceneFrame::kSlots: the last frame recorded for it must be done.
+  void record(VkCommandBuffer commands, const FrameInput& input, uint32_t slot, const Stamps& stamps);
+
+  /// The stages that external resources are used in, for the host's own barriers.
+  VkPipelineStageFlags2 stages() const;
+  /// Every file that the kernels were compiled from, each once.
+  std::vector<std::string> shaderFiles() const;
+
+ private:
+  /// The barriers before a pass, ready to be recorded.
+  struct Barriers {
+    std::vector<VkMemoryBarrier2> memory;
+    std::vector<VkImageMemoryBarrier2> images;
+  };
+  void makeBarriers();
+  void checkExternals(uint32_t slot) const;
+  void clearHistory(VkCommandBuffer commands);
+  void beforePass(VkCommandBuffer commands, size_t pass) const;
+  void poisonAround(VkCommandBuffer commands, uint32_t pass, bool before) const;
+
+  const gpu::Device& device_;
+  SceneFrame& scene_;
+  graph::CompiledGraph graph_;
+  Shared shared_;
+  std::unique_ptr<Resources> resources_;
+  std::vector<std::unique_ptr<PassRuntime>> passes_;
+  std::vector<Barriers> barriers_;  ///< by pass
+  bool share_, poison_, external_ = false;
+};
+
+}  // namespace weir::execute

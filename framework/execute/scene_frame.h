@@ -1,0 +1,68 @@
+// What all passes see of scene and frame: camera, frame number, and a scene that may move. Outlives the graphs that are
+// run over it.
+#pragma once
+
+#include <weir/execute/frame_constants.h>
+#include <weir/execute/scene_motion.h>
+#include <weir/gpu/memory.h>
+#include <weir/scene/upload.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace weir::execute {
+
+struct FrameInput {
+  scene::Camera camera;
+  uint32_t index = 0;  ///< frame number: a key of the random numbers
+  uint32_t seed = 0;
+  bool cut = false;  ///< the camera jumped: history is cleared, nothing moved
+  /// Where a clip has taken the scene; none: where it was, at first at rest. Ignored where no clip moves the scene.
+  const scene::SceneState* state = nullptr;
+};
+
+class SceneFrame {
+ public:
+  static constexpr uint32_t kSlots = SceneMotion::kSlots;  ///< frames in flight
+
+  /// The scene must outlive this.
+  SceneFrame(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene);
+  ~SceneFrame();
+  SceneFrame(const SceneFrame&) = delete;
+  SceneFrame& operator=(const SceneFrame&) = delete;
+
+  /// The next frame starts without a past, as the first one does.
+  void forget() { fresh_ = true; }
+  /// Whether the frame that begins now is such a one.
+  bool fresh() const { return fresh_; }
+
+  /// Brings the scene to the frame's state and writes its constants. The slot's last frame must be done.
+  void begin(VkCommandBuffer commands, const FrameInput& input, uint32_t slot, uint32_t width, uint32_t height);
+  /// The frame is recorded.
+  void end();
+
+  uint32_t parity() const { return static_cast<uint32_t>(frames_ & 1u); }  ///< of the frame that is being recorded
+  uint64_t frames() const { return frames_; }                              ///< recorded so far
+  VkDescriptorSet set() const { return sets_[parity()]; }
+  static uint32_t constantsOffset(uint32_t slot);
+  const std::vector<scene::SceneGpu::Draw>& draws() const { return motion_ ? motion_->draws() : scene_.draws; }
+  const scene::SceneGpu& scene() const { return scene_; }
+  const gpu::Buffer& rayCounter() const { return rayCounter_; }
+  /// What a moving scene takes besides SceneGpu::bytes().
+  uint64_t motionBytes() const { return motion_ ? motion_->bytes() : 0; }
+
+ private:
+  void writeConstants(const FrameInput& input, uint32_t slot, uint32_t width, uint32_t height);
+
+  const scene::SceneGpu& scene_;
+  gpu::Buffer constants_, rayCounter_;
+  std::unique_ptr<SceneMotion> motion_;    ///< only where a clip moves the scene
+  std::array<VkDescriptorSet, 2> sets_{};  ///< by parity; of a still scene both are one
+  uint64_t frames_ = 0;
+  bool fresh_ = true;
+  GpuCamera previousCamera_;
+};
+
+}  // namespace weir::execute
