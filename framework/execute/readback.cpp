@@ -96,9 +96,12 @@ std::vector<std::byte> Executor::readResource(const std::string& name) {
 
 void Executor::writeResource(const std::string& name, std::span<const std::byte> bytes) {
   finish();
+  const uint32_t index = resourceNamed(name);
+  const graph::Resource& resource = graph().resources[index];
+  if (resource.external) throw InputError(fmt::format("'{}' is the host's: the host fills it", name));
   // Both copies: the frame to come reads this one as its own or as the one before it.
   for (uint32_t parity = 0; parity < 2; ++parity) {
-    const Storage& storage = runtime_->resources().at(resourceNamed(name), parity, false);
+    const Storage& storage = runtime_->resources().at(index, parity, false);
     const gpu::Buffer staging(device_, bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Residency::Upload,
                               "upload");
     std::memcpy(staging.mapped(), bytes.data(), bytes.size());
@@ -109,6 +112,11 @@ void Executor::writeResource(const std::string& name, std::span<const std::byte>
         const VkBufferCopy copy{0, 0, std::min<uint64_t>(bytes.size(), storage.buffer.size())};
         vkCmdCopyBuffer(commands, staging.handle(), storage.buffer.handle(), 1, &copy);
       } else {
+        const VkImageMemoryBarrier2 start = toGeneral(storage.image);
+        VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+        info.imageMemoryBarrierCount = 1;
+        info.pImageMemoryBarriers = &start;
+        vkCmdPipelineBarrier2(commands, &info);
         const VkBufferImageCopy copy = wholeImage(storage.image);
         vkCmdCopyBufferToImage(commands, staging.handle(), storage.image.handle(), VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
       }
