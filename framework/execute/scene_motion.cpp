@@ -26,6 +26,7 @@ SceneMotion::SceneMotion(const gpu::Device& device, shader::Compiler& compiler, 
     : device_(device), scene_(scene), prepared_(scene.prepared()) {
   state_ = scene::StateMaker(scene.source(), prepared_).at(scene::restPose(scene.source()));
   packed_ = scene::packInstances(prepared_, draws_);
+  topInstances_.resize(packed_.size());
   layOut();
   staging_ = gpu::Buffer(device, kSlots * slotBytes_, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Residency::Upload,
                          "scene motion staging");
@@ -174,7 +175,9 @@ void SceneMotion::upload(VkCommandBuffer commands, uint32_t slot, uint32_t half,
   stage(slot, jointsPart_, state_.joints);
   stage(slot, weightsPart_, state_.weights);
   for (uint32_t h = 0; h < 2; ++h) {
-    if (acceleration_ && (h == half || fresh)) stage(slot, topPart_[h], acceleration_->packInstances(state_, h));
+    if (!acceleration_ || (h != half && !fresh)) continue;
+    acceleration_->packInstances(state_, h, topInstances_);
+    stage(slot, topPart_[h], topInstances_);
   }
   staging_.flush();
 

@@ -59,6 +59,7 @@ class SceneMotion {
   float previousDiameter_ = 0.0f, previousLargestSide_ = 0.0f;
   std::vector<scene::GpuInstance> packed_;
   std::vector<scene::SceneGpu::Draw> draws_;
+  std::vector<VkAccelerationStructureInstanceKHR> topInstances_;
 
   std::array<gpu::Buffer, 2> instances_, lights_, positions_;
   gpu::Buffer alias_, vertices_, influences_, deltas_, flat_, joints_, weights_;

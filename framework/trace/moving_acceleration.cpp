@@ -58,6 +58,7 @@ MovingAcceleration::MovingAcceleration(const gpu::Device& device, const scene::P
   scratch_ =
       gpu::Buffer(device, scratch, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
                   gpu::Residency::Device, "moving structures' scratch", alignment);
+  for (Half& half : halves_) layOutBuilds(half);
 }
 
 VkAccelerationStructureBuildGeometryInfoKHR MovingAcceleration::bottomInfo(const Bottom& bottom) const {
@@ -66,40 +67,40 @@ VkAccelerationStructureBuildGeometryInfoKHR MovingAcceleration::bottomInfo(const
   return info;
 }
 
-std::vector<VkAccelerationStructureInstanceKHR> MovingAcceleration::packInstances(const scene::SceneState& state,
-                                                                                  uint32_t h) const {
+void MovingAcceleration::packInstances(const scene::SceneState& state, uint32_t h,
+                                       std::span<VkAccelerationStructureInstanceKHR> into) const {
   const Half& half = halves_[h];
-  std::vector<VkAccelerationStructureInstanceKHR> result;
   for (size_t i = 0; i < scene_.instances.size(); ++i) {
     const uint32_t range = scene_.instances[i].range;
     const int own = half.bottomOfRange[range];
-    result.push_back(instanceOf(scene_, i, state.toWorld[i],
-                                own >= 0 ? half.bottom[own].structure.address() : still_.bottom(range)));
+    into[i] = instanceOf(scene_, i, state.toWorld[i],
+                         own >= 0 ? half.bottom[own].structure.address() : still_.bottom(range));
   }
-  return result;
+}
+
+void MovingAcceleration::layOutBuilds(Half& half) const {
+  for (const Bottom& bottom : half.bottom) {
+    VkAccelerationStructureBuildGeometryInfoKHR info = bottomInfo(bottom);
+    info.dstAccelerationStructure = bottom.structure.handle();
+    info.scratchData.deviceAddress = scratch_.address() + bottom.scratch;
+    half.build.push_back(info);
+    info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
+    info.srcAccelerationStructure = bottom.structure.handle();
+    half.refit.push_back(info);
+    half.ranges.emplace_back();
+    for (uint32_t count : bottom.geometry.counts) half.ranges.back().push_back({count, 0, 0, 0});
+  }
+  for (const auto& list : half.ranges) half.rangePointers.push_back(list.data());
 }
 
 void MovingAcceleration::record(VkCommandBuffer commands, uint32_t h, bool fresh) const {
   const Half& half = halves_[h];
   // Before the first build of this frame, the builds of the frame before may still use the scratch memory.
   waitForBuilds(commands);
-  std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
-  std::vector<std::vector<VkAccelerationStructureBuildRangeInfoKHR>> ranges;
-  for (const Bottom& bottom : half.bottom) {
-    VkAccelerationStructureBuildGeometryInfoKHR info = bottomInfo(bottom);
-    info.mode =
-        fresh ? VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR : VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
-    info.srcAccelerationStructure = fresh ? VK_NULL_HANDLE : bottom.structure.handle();
-    info.dstAccelerationStructure = bottom.structure.handle();
-    info.scratchData.deviceAddress = scratch_.address() + bottom.scratch;
-    infos.push_back(info);
-    ranges.emplace_back();
-    for (uint32_t count : bottom.geometry.counts) ranges.back().push_back({count, 0, 0, 0});
-  }
+  const auto& infos = fresh ? half.build : half.refit;
   if (!infos.empty()) {
-    std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> pointers;
-    for (const auto& list : ranges) pointers.push_back(list.data());
-    vkCmdBuildAccelerationStructuresKHR(commands, static_cast<uint32_t>(infos.size()), infos.data(), pointers.data());
+    vkCmdBuildAccelerationStructuresKHR(commands, static_cast<uint32_t>(infos.size()), infos.data(),
+                                        half.rangePointers.data());
     waitForBuilds(commands);
   }
   const InstanceGeometry geometry(half.instances.address());

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace weir::trace {
@@ -22,7 +23,9 @@ class MovingAcceleration {
   VkAccelerationStructureKHR top(uint32_t half) const { return halves_[half].top.handle(); }
   /// The buffer that `record` reads a half's instances from, and what must be copied there before.
   VkBuffer instances(uint32_t half) const { return halves_[half].instances.handle(); }
-  std::vector<VkAccelerationStructureInstanceKHR> packInstances(const scene::SceneState& state, uint32_t half) const;
+  /// `into`: as many as the scene has instances.
+  void packInstances(const scene::SceneState& state, uint32_t half,
+                     std::span<VkAccelerationStructureInstanceKHR> into) const;
   /// Builds (`fresh`: nothing usable is there yet) or refits a half. Vertices and instances must be visible to builds;
   /// what follows must wait for the build stage's writes.
   void record(VkCommandBuffer commands, uint32_t half, bool fresh) const;
@@ -39,7 +42,12 @@ class MovingAcceleration {
     std::vector<int> bottomOfRange;  ///< -1: the still one
     gpu::Buffer instances;
     Structure top;
+    /// What builds the bottom structures, laid out once: frames allocate nothing.
+    std::vector<VkAccelerationStructureBuildGeometryInfoKHR> build, refit;
+    std::vector<std::vector<VkAccelerationStructureBuildRangeInfoKHR>> ranges;
+    std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> rangePointers;
   };
+  void layOutBuilds(Half& half) const;
   VkAccelerationStructureBuildGeometryInfoKHR bottomInfo(const Bottom& bottom) const;
 
   const scene::PreparedScene& scene_;

@@ -54,6 +54,19 @@ class GraphRun {
            Options options)
       : guard_(*device_) {
     registry_.add("own", entries, options.shaders);
+    graph::CompiledGraph compiled = compile(passes, output, options);
+    source_ = std::move(options.scene);
+    prepared_ = scene::prepareScene(source_);
+    scene_ =
+        std::make_unique<scene::SceneGpu>(*device_, source_, prepared_, device_->capabilities().accelerationStructure);
+    execute::ExecutorOptions executorOptions;
+    executorOptions.backend = trace::chooseBackend("auto", *device_);
+    executorOptions.poison = options.poison;
+    executor_ = std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(compiled),
+                                                    executorOptions);
+  }
+  /// Another graph of the same passes, to swap to.
+  graph::CompiledGraph compile(const std::string& passes, const std::string& output, const Options& options) {
     const std::string json =
         R"({"version": 1, "name": "test", "passes": )" + passes + R"(, "outputs": {"o": ")" + output + "\"}}";
     std::vector<graph::Diagnostic> diagnostics;
@@ -65,15 +78,7 @@ class GraphRun {
     compileOptions.keepAll = options.keepAll;
     graph::CompiledGraph compiled = graph::compile(description, registry_.catalog(), compileOptions, diagnostics);
     if (!diagnostics.empty()) throw graph::GraphError(diagnostics);
-    source_ = std::move(options.scene);
-    prepared_ = scene::prepareScene(source_);
-    scene_ =
-        std::make_unique<scene::SceneGpu>(*device_, source_, prepared_, device_->capabilities().accelerationStructure);
-    execute::ExecutorOptions executorOptions;
-    executorOptions.backend = trace::chooseBackend("auto", *device_);
-    executorOptions.poison = options.poison;
-    executor_ = std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(compiled),
-                                                    executorOptions);
+    return compiled;
   }
   /// Submits frames without waiting for any.
   void run(uint32_t frames = 1) {

@@ -1,0 +1,222 @@
+// One graph takes another's place between two frames: what of it goes on, what starts anew, and what is left when the new
+// one cannot be had.
+#include <fstream>
+
+#include "execute/graph_run.h"
+
+namespace weir::test {
+namespace {
+
+/// Adds a step to what it wrote last frame; how many elements a pixel, and with a step that is compiled in.
+class Counter : public Pass {
+ public:
+  static void describe(PassDescription& d) {
+    d.input("before", perPixel<Word>()).anyCount();
+    d.output("after", perPixel<Word>()).times("count").passesThrough("before");
+    d.param("step", 1);
+    d.param("count", 1).range(1, 4);
+    d.param("fixedStep", 0).specialises();
+    d.param("lookedAt", 0);
+  }
+  void prepare(PrepareContext& c) override {
+    const int looked = c.integer("lookedAt");
+    kernel_ = c.kernel("swap.glsl", {.bind = {}, .defines = {{"LOOKED_AT", std::to_string(looked)}}, .sources = {}});
+  }
+  void record(RecordContext& c) override { c.launch(kernel_); }
+
+ private:
+  Kernel kernel_;
+};
+/// The same by another name.
+class Other final : public Counter {};
+
+const std::vector<WeirPassEntry> kPasses = {passEntry<Counter>("Counter"), passEntry<Other>("Other")};
+
+/// One counter, reading what it wrote last frame.
+std::string counter(const std::string& params) {
+  return R"({"b": {"type": "own.Counter", "inputs": {"before": "b.after@previous"}, "params": {)" + params + "}}}";
+}
+
+class Swap : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    shader("out_after[i].value = before + uint(param_step + param_fixedStep + LOOKED_AT);");
+    options_.shaders = folder_.path();
+    run_ = std::make_unique<GraphRun>(counter("\"step\": 100"), "b.after", kPasses, options_);
+  }
+  void shader(const std::string& last) {
+    folder_.write("swap.glsl", R"(
+void run(uvec2 pixel) {
+  const uint i = (pixel.y * frameWidth + pixel.x) * out_after_count;
+  const uint before = in_before[(pixel.y * frameWidth + pixel.x) * in_before_count].value;
+  )" + last + "\n}\n");
+  }
+  void swap(const std::string& passes) { run_->executor().swap(run_->compile(passes, "b.after", options_)); }
+  uint32_t value(const std::string& resource) { return run_->read(resource)[0]; }
+
+  TemporaryFolder folder_;
+  GraphRun::Options options_;
+  std::unique_ptr<GraphRun> run_;
+};
+
+TEST_F(Swap, AParameterIsPushedAndHistoryGoesOn) {
+  run_->run(3);
+  EXPECT_EQ(value("b.after"), 1300u);
+  const uint64_t made = run_->executor().pipelinesMade();
+  swap(counter("\"step\": 7"));
+  run_->run(2);
+  EXPECT_EQ(value("b.after"), 1314u);
+  EXPECT_EQ(run_->executor().pipelinesMade(), made) << "a pushed parameter needs no pipeline";
+}
+
+TEST_F(Swap, ASpecialisedParameterMakesThatPipelineAloneAndHistoryGoesOn) {
+  run_->run(3);
+  const uint64_t made = run_->executor().pipelinesMade();
+  swap(counter("\"step\": 100, \"fixedStep\": 11"));
+  run_->run();
+  EXPECT_EQ(value("b.after"), 1411u);
+  EXPECT_EQ(run_->executor().pipelinesMade(), made + 1);
+}
+
+TEST_F(Swap, AParameterThatPrepareLookedAtPreparesAnew) {
+  run_->run(1);
+  swap(counter("\"step\": 0, \"lookedAt\": 5"));
+  run_->run();
+  EXPECT_EQ(value("b.after"), 1105u);
+}
+
+/// `a` and `b` in one chain, both seen.
+std::string chain(const std::string& aType = "own.Counter", const std::string& count = "1", bool enabled = true) {
+  return R"({"a": {"type": ")" + aType + R"(", "inputs": {"before": "a.after@previous"}},
+    "b": {"type": "own.Counter", "inputs": {"before": "c.after@previous"}, "params": {"step": 10, "count": )" +
+         count + R"(}},
+    "c": {"type": "own.Counter", "enabled": )" +
+         (enabled ? "true" : "false") + R"(, "inputs": {"before": "b.after"}, "params": {"step": 0}},
+    "join": {"type": "own.Join", "inputs": {"x": "a.after", "y": "b.after"}}})";
+}
+
+class Join final : public Pass {
+ public:
+  static void describe(PassDescription& d) {
+    d.input("x", perPixel<Word>()).anyCount();
+    d.input("y", perPixel<Word>()).anyCount();
+    d.output("sum", perPixel<Word>());
+  }
+  void prepare(PrepareContext& c) override { kernel_ = c.kernel("join.glsl"); }
+  void record(RecordContext& c) override { c.launch(kernel_); }
+
+ private:
+  Kernel kernel_;
+};
+
+class SwapChain : public Swap {
+ protected:
+  void SetUp() override {
+    Swap::SetUp();
+    folder_.write("join.glsl", R"(
+void run(uvec2 pixel) {
+  const uint i = pixel.y * frameWidth + pixel.x;
+  out_sum[i].value = in_x[i * in_x_count].value * 10000u + in_y[i * in_y_count].value;
+}
+)");
+    std::vector<WeirPassEntry> passes = kPasses;
+    passes.push_back(passEntry<Join>("Join"));
+    run_ = std::make_unique<GraphRun>(chain(), "join.sum", passes, options_);
+    run_->run(4);
+    expect(1004, 1040, "before any swap");
+  }
+  void swap(const std::string& passes) { run_->executor().swap(run_->compile(passes, "join.sum", options_)); }
+  void expect(uint32_t a, uint32_t b, const std::string& when) {
+    EXPECT_EQ(value("a.after"), a) << when;
+    EXPECT_EQ(value("b.after"), b) << when;
+    EXPECT_EQ(value("join.sum"), a * 10000 + b) << when;
+  }
+};
+
+TEST_F(SwapChain, AToggleThatChangesTheProducerClearsWhatItProducedAndNothingElse) {
+  swap(chain("own.Counter", "1", false));  // c.after@previous is now b.after@previous: another producer
+  run_->run();
+  expect(1005, 1010, "after disabling");
+  run_->run(2);
+  swap(chain());
+  run_->run();
+  expect(1008, 1010, "after enabling again");
+}
+
+TEST_F(SwapChain, AnotherTypeOfProducerStartsAnew) {
+  swap(chain("own.Other"));
+  run_->run();
+  expect(1001, 1050, "a by another pass");
+}
+
+TEST_F(SwapChain, AnotherLayoutStartsAnew) {
+  swap(chain("own.Counter", "3"));
+  run_->run();
+  expect(1005, 1050, "c counts one element a pixel as before");
+  swap(R"({"a": {"type": "own.Counter", "inputs": {"before": "a.after@previous"}, "params": {"count": 2}},
+    "join": {"type": "own.Join", "inputs": {"x": "a.after", "y": "a.after"}}})");
+  run_->run();
+  EXPECT_EQ(value("a.after"), 1001u) << "two elements a pixel now";
+}
+
+TEST_F(SwapChain, AnotherSizeStartsAnew) {
+  options_.width = 20;
+  swap(chain());
+  run_->run();
+  expect(1001, 1010, "after a resize");
+  EXPECT_EQ(run_->read("join.sum").size(), 320u);
+}
+
+TEST_F(SwapChain, TwoSwapsWithoutAFrameBetweenThemLeaveNoRubbish) {
+  swap(chain("own.Other"));
+  swap(chain("own.Other", "2"));
+  run_->run();
+  expect(1001, 1050, "a's history was never cleared between the two");
+}
+
+TEST_F(SwapChain, AGraphThatCannotBeHadLeavesTheOldOneRunning) {
+  shader("this is no GLSL");
+  EXPECT_THROW(swap(chain("own.Other", "2")), shader::CompileError);
+  run_->run();
+  expect(1005, 1050, "after a swap that failed");
+}
+
+TEST_F(SwapChain, AnEditedShaderIsTakenAndABrokenOneIsNot) {
+  const uint64_t made = run_->executor().pipelinesMade();
+  run_->executor().reloadShaders();
+  EXPECT_EQ(run_->executor().pipelinesMade(), made) << "nothing was edited";
+  run_->run();
+  expect(1005, 1050, "after a reload of the same");
+
+  shader("out_after[i].value = before + 2u * uint(param_step);");
+  run_->executor().reloadShaders();
+  EXPECT_EQ(run_->executor().pipelinesMade(), made + 1) << "one file, one pipeline: three passes share it";
+  run_->run();
+  expect(1007, 1070, "after an edit");
+
+  shader("out_after[i].value = befor;");
+  try {
+    run_->executor().reloadShaders();
+    ADD_FAILURE() << "a broken shader was taken";
+  } catch (const shader::CompileError& error) {
+    EXPECT_NE(std::string(error.what()).find("swap.glsl:5"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("befor"), std::string::npos) << error.what();
+  }
+  run_->run();
+  expect(1009, 1090, "the old pipeline goes on");
+  shader("out_after[i].value = before + uint(param_step);");
+  run_->executor().reloadShaders();
+  run_->run();
+  expect(1010, 1100, "mended");
+}
+
+TEST_F(SwapChain, ManySwapsWithFramesInFlight) {
+  for (int i = 0; i < 12; ++i) {
+    swap(chain("own.Counter", i % 2 == 0 ? "3" : "1"));
+    run_->run(1 + i % 3);
+  }
+  expect(1004 + 24, 1040 + 240, "every frame counted once");
+}
+
+}  // namespace
+}  // namespace weir::test
