@@ -176,7 +176,7 @@ TEST_F(SwapChain, TwoSwapsWithoutAFrameBetweenThemLeaveNoRubbish) {
 
 TEST_F(SwapChain, AGraphThatCannotBeHadLeavesTheOldOneRunning) {
   shader("this is no GLSL");
-  EXPECT_THROW(swap(chain("own.Other", "2")), shader::CompileError);
+  EXPECT_THROW(swap(chain("own.Other", "2")), RuntimeError);
   run_->run();
   expect(1005, 1050, "after a swap that failed");
 }
@@ -198,7 +198,7 @@ TEST_F(SwapChain, AnEditedShaderIsTakenAndABrokenOneIsNot) {
   try {
     run_->executor().reloadShaders();
     ADD_FAILURE() << "a broken shader was taken";
-  } catch (const shader::CompileError& error) {
+  } catch (const RuntimeError& error) {
     EXPECT_NE(std::string(error.what()).find("swap.glsl:5"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("befor"), std::string::npos) << error.what();
   }

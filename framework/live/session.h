@@ -1,0 +1,54 @@
+// A graph that runs and follows its files: shaders, plugins and the graph's own JSON can be edited between two frames.
+// Whatever goes wrong with an edit is reported, and what ran before goes on. The scene is never loaded again.
+#pragma once
+
+#include <weir/execute/executor.h>
+#include <weir/graph/compile.h>
+#include <weir/live/watched_files.h>
+#include <weir/pass/registry.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace weir::live {
+
+/// What a session noticed.
+struct Event {
+  enum class Kind : uint8_t { Graph, Plugin, Shader };
+  Kind kind = Kind::Graph;
+  std::vector<std::string> files;  ///< that changed
+  std::string error;               ///< complete, with places; empty: the change is in force
+};
+
+class Session {
+ public:
+  /// Reads and compiles the graph file. Throws as compileFile and Executor do. The references must outlive the session.
+  Session(const gpu::Device& device, shader::Compiler& compiler, Registry& registry, const scene::SceneGpu& scene,
+          const std::string& graphFile, const graph::Overrides& overrides, const graph::CompileOptions& compileOptions,
+          const execute::ExecutorOptions& executorOptions);
+
+  execute::Executor& executor() { return *executor_; }
+  const graph::Overrides& overrides() const { return overrides_; }
+
+  /// Looks whether files changed and follows them. Between two frames.
+  std::vector<Event> poll();
+
+  /// `--set`, `--enable`, `--disable` and the frame's size from now on; history is kept as Executor::swap says. When it
+  /// throws (GraphError, shader::CompileError, …) nothing has changed.
+  void change(const graph::Overrides& overrides, const graph::CompileOptions& compileOptions);
+
+ private:
+  graph::CompiledGraph compile(const graph::Overrides& overrides, const graph::CompileOptions& options) const;
+  void watch();
+  std::vector<std::string> plugins() const;
+
+  Registry& registry_;
+  std::string graphFile_;
+  graph::Overrides overrides_;
+  graph::CompileOptions options_;
+  std::unique_ptr<execute::Executor> executor_;
+  WatchedFiles files_;
+};
+
+}  // namespace weir::live

@@ -1,0 +1,35 @@
+#include <weir/live/watched_files.h>
+
+#include <sys/stat.h>
+
+#include <utility>
+
+namespace weir::live {
+
+WatchedFiles::Seen WatchedFiles::look(const std::string& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) return {};
+  return {status.st_mtim.tv_sec, status.st_mtim.tv_nsec, static_cast<uint64_t>(status.st_size), status.st_ino};
+}
+
+void WatchedFiles::watch(const std::vector<std::string>& files) {
+  std::map<std::string, Seen> wanted;
+  for (const std::string& file : files) {
+    const auto known = files_.find(file);
+    wanted[file] = known == files_.end() ? look(file) : known->second;
+  }
+  files_ = std::move(wanted);
+}
+
+std::vector<std::string> WatchedFiles::changed() {
+  std::vector<std::string> result;
+  for (auto& [file, seen] : files_) {
+    const Seen now = look(file);
+    if (now == seen) continue;
+    seen = now;
+    result.push_back(file);
+  }
+  return result;
+}
+
+}  // namespace weir::live
