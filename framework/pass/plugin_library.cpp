@@ -1,0 +1,125 @@
+#include <weir/core/error.h>
+#include <weir/pass/plugin_library.h>
+#include <weir/pass/plugin_loader.h>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+namespace weir {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that only this user can enter, gone again at the end of the scope. The library lies two levels down: a run
+/// path of $ORIGIN/.. must not lead into the folder of all temporary files, where anybody can put a library.
+class PrivateFolder {
+ public:
+  PrivateFolder() {
+    std::string name = (fs::temp_directory_path() / "weir-plugin-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw InputError(fmt::format("no temporary folder {}: {}", name, std::strerror(errno)));
+    root_ = name;
+    inner_ = root_ / "lib/weir";
+    fs::create_directories(inner_);
+  }
+  ~PrivateFolder() {
+    std::error_code ignored;
+    fs::remove_all(root_, ignored);
+  }
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+  const fs::path& inner() const { return inner_; }
+
+ private:
+  fs::path root_, inner_;
+};
+
+/// Copies the library, and links what else lies beside it, so that a run path of $ORIGIN still finds libraries that the
+/// plugin brought.
+fs::path copyInto(const fs::path& folder, const fs::path& library) {
+  const fs::path copy = folder / library.filename();
+  fs::copy_file(library, copy);
+  for (const fs::directory_entry& beside : fs::directory_iterator(library.parent_path())) {
+    const std::string name = beside.path().filename().string();
+    if (name.find(".so") != std::string::npos && name != library.filename())
+      fs::create_symlink(fs::absolute(beside.path()), folder / name);
+  }
+  return copy;
+}
+
+/// The linker's message, with the file that the user knows in place of the copy.
+std::string lastLinkError(const std::string& copy, const std::string& library) {
+  const char* error = dlerror();
+  std::string text = error != nullptr ? error : "unknown reason";
+  for (size_t at = text.find(copy); at != std::string::npos; at = text.find(copy, at + library.size()))
+    text.replace(at, copy.size(), library);
+  return text;
+}
+
+const WeirPluginDescriptor* callPlugin(void* symbol, const std::string& who) {
+  try {
+    return reinterpret_cast<WeirPluginFunction>(symbol)();  // WEIR_PLUGIN's can't throw; one by hand might
+  } catch (const std::exception& thrown) {
+    throw InputError(fmt::format("{}: weir_plugin threw: {}", who, thrown.what()));
+  } catch (...) {
+    throw InputError(fmt::format("{}: weir_plugin threw something that is no exception", who));
+  }
+}
+
+}  // namespace
+
+void compareBuild(const std::string& who, uint32_t abi, std::string_view buildTag) {
+  if (abi != WEIR_ABI_VERSION)
+    throw InputError(fmt::format("{} is built for plugin ABI {}, this Weir has ABI {}; rebuild the plugin", who, abi,
+                                 WEIR_ABI_VERSION));
+  if (buildTag != WEIR_BUILD_TAG)
+    throw InputError(
+        fmt::format("{} has build tag '{}', this Weir has '{}'; rebuild the plugin", who, buildTag, WEIR_BUILD_TAG));
+}
+
+std::shared_ptr<const PluginLibrary> PluginLibrary::open(const PluginManifest& manifest) {
+  const std::string who = fmt::format("plugin '{}' ({})", manifest.name, manifest.library.string());
+  compareBuild(fmt::format("plugin '{}' (manifest {})", manifest.name, manifest.file.string()), manifest.abi,
+               manifest.buildTag);
+  std::error_code error;
+  if (!fs::exists(manifest.library, error))
+    throw InputError(fmt::format("{}: the library named by {} does not exist", who, manifest.file.string()));
+
+  const std::shared_ptr<PluginLibrary> library(new PluginLibrary);
+  try {
+    const PrivateFolder folder;
+    library->copy_ = copyInto(folder.inner(), manifest.library);
+    checkSharedLibrary(library->copy_, who);  // the copy: the file itself may be written to at this moment
+    library->handle_ = dlopen(library->copy_.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (library->handle_ == nullptr)
+      throw InputError(fmt::format("{} can't be loaded: {}", who,
+                                   lastLinkError(library->copy_.string(), manifest.library.string())));
+  } catch (const fs::filesystem_error& failed) {
+    throw InputError(fmt::format("{} can't be copied: {}", who, failed.what()));
+  }
+
+  void* symbol = dlsym(library->handle_, "weir_plugin");
+  if (symbol == nullptr) throw InputError(fmt::format("{} does not export the function weir_plugin", who));
+  const WeirPluginDescriptor* descriptor = callPlugin(symbol, who);
+  if (descriptor == nullptr) throw InputError(fmt::format("{}: weir_plugin returned nothing", who));
+  compareBuild(who, descriptor->abiVersion, descriptor->buildTag != nullptr ? descriptor->buildTag : "");
+  if (descriptor->name == nullptr || manifest.name != descriptor->name)
+    throw InputError(fmt::format("{} calls itself '{}'; its manifest {} says '{}'", who,
+                                 descriptor->name != nullptr ? descriptor->name : "", manifest.file.string(),
+                                 manifest.name));
+  if (descriptor->passCount > 0 && descriptor->passes == nullptr)
+    throw InputError(fmt::format("{} announces {} passes and lists none", who, descriptor->passCount));
+  library->descriptor_ = descriptor;
+  return library;
+}
+
+PluginLibrary::~PluginLibrary() {
+  if (handle_ != nullptr) dlclose(handle_);
+}
+
+}  // namespace weir
