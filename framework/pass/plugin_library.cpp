@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 namespace weir {
@@ -15,16 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder that only this user can enter, gone again at the end of the scope. The library lies two levels down: a run
-/// path of $ORIGIN/.. must not lead into the folder of all temporary files, where anybody can put a library.
+/// A folder that only this user can enter, gone again at the end of the scope. `inner` lies two levels down: a run path
+/// of $ORIGIN/.. must not lead into the folder of all temporary files, where anybody can put a library.
 class PrivateFolder {
  public:
-  PrivateFolder() {
+  explicit PrivateFolder(const fs::path& innerName) {
     std::string name = (fs::temp_directory_path() / "weir-plugin-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr)
       throw InputError(fmt::format("no temporary folder {}: {}", name, std::strerror(errno)));
     root_ = name;
-    inner_ = root_ / "lib/weir";
+    inner_ = root_ / "copy" / innerName;
     fs::create_directories(inner_);
   }
   ~PrivateFolder() {
@@ -39,15 +41,30 @@ class PrivateFolder {
   fs::path root_, inner_;
 };
 
-/// Copies the library, and links what else lies beside it, so that a run path of $ORIGIN still finds libraries that the
-/// plugin brought.
-fs::path copyInto(const fs::path& folder, const fs::path& library) {
-  const fs::path copy = folder / library.filename();
+bool contains(const fs::path& file, const std::string& words) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  return bytes.find(words) != std::string::npos;
+}
+
+/// Links from `to` to everything in `from`, except to what has that name. What can't be listed or linked is not there:
+/// the linker says so if it was needed.
+void linkAll(const fs::path& from, const fs::path& to, const fs::path& except) {
+  std::error_code error;
+  for (fs::directory_iterator entry(from, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->path().filename() != except) fs::create_symlink(entry->path(), to / entry->path().filename(), ignored);
+  }
+}
+
+/// Copies the library. If it has a run path relative to itself, by which it finds libraries that it brought, its
+/// surroundings are there too: what lies beside it and beside its folder.
+fs::path copyInto(const fs::path& inner, const fs::path& library) {
+  const fs::path copy = inner / library.filename(), folder = library.parent_path();
   fs::copy_file(library, copy);
-  for (const fs::directory_entry& beside : fs::directory_iterator(library.parent_path())) {
-    const std::string name = beside.path().filename().string();
-    if (name.find(".so") != std::string::npos && name != library.filename())
-      fs::create_symlink(fs::absolute(beside.path()), folder / name);
+  if (contains(copy, "$ORIGIN")) {
+    linkAll(folder, inner, library.filename());
+    linkAll(folder.parent_path(), inner.parent_path(), inner.filename());
   }
   return copy;
 }
@@ -92,8 +109,9 @@ std::shared_ptr<const PluginLibrary> PluginLibrary::open(const PluginManifest& m
 
   const std::shared_ptr<PluginLibrary> library(new PluginLibrary);
   try {
-    const PrivateFolder folder;
-    library->copy_ = copyInto(folder.inner(), manifest.library);
+    const fs::path real = fs::canonical(manifest.library), name = real.parent_path().filename();
+    const PrivateFolder folder(name.empty() ? "weir" : name);
+    library->copy_ = copyInto(folder.inner(), real);
     checkSharedLibrary(library->copy_, who);  // the copy: the file itself may be written to at this moment
     library->handle_ = dlopen(library->copy_.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library->handle_ == nullptr)

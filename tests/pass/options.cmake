@@ -24,9 +24,9 @@ foreach(source IN LISTS plugin_sources)
   set_target_properties(test_plugin_reload_${version} PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
   add_dependencies(test_${name} test_plugin_reload_${version})
 endforeach()
-# Found by the plugin through a run path of $ORIGIN, as if both had been moved here together.
+# Found by the plugin through a run path that is relative to it.
 add_library(test_plugin_helper SHARED ${folder}/plugins/helper/helper.cpp)
 set_target_properties(test_plugin_helper PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${TEST_PLUGIN_FOLDER}/with_helper)
 target_link_libraries(test_plugin_with_helper PRIVATE test_plugin_helper)
-set_target_properties(test_plugin_with_helper PROPERTIES BUILD_RPATH "$ORIGIN" BUILD_RPATH_USE_ORIGIN ON)
+set_target_properties(test_plugin_with_helper PROPERTIES BUILD_RPATH "$ORIGIN;$ORIGIN/../its_own")
 target_compile_definitions(test_${name} PRIVATE TEST_PLUGIN_FOLDER="${TEST_PLUGIN_FOLDER}")

@@ -142,12 +142,21 @@ TEST_F(Plugins, AHalfWrittenLibraryIsRefusedAtEveryLength) {
   expectRefused(registry, "good.Nothing", {"no shared library for this machine"});
 }
 
-TEST_F(Plugins, ALibraryBesideThePluginIsFoundByIt) {
+TEST_F(Plugins, LibrariesThatAPluginBroughtAreFound) {
+  const auto expectHelped = [&](const std::string& where) {
+    Registry registry({scratch / "moved"});
+    const PassDescription* helped = registry.find("with_helper.Helped");
+    ASSERT_NE(helped, nullptr) << where << ": " << registry.problem("with_helper.Helped");
+    EXPECT_EQ(helped->text, "from the helper");
+  };
   fs::copy(folderOf("with_helper"), scratch / "moved");
+  expectHelped("beside it, by $ORIGIN");
+  fs::create_directory(scratch / "its_own");
+  fs::rename(scratch / "moved/libtest_plugin_helper.so", scratch / "its_own/libtest_plugin_helper.so");
+  expectHelped("beside its folder, by $ORIGIN/../its_own");
+  fs::remove_all(scratch / "its_own");
   Registry registry({scratch / "moved"});
-  const PassDescription* helped = registry.find("with_helper.Helped");
-  ASSERT_NE(helped, nullptr) << registry.problem("with_helper.Helped");
-  EXPECT_EQ(helped->text, "from the helper");
+  expectRefused(registry, "with_helper.Helped", {"libtest_plugin_helper.so", "libweir_with_helper.so"});
 }
 
 TEST_F(Plugins, TwoThatClaimOneNameAreBothNamedAndNeitherIsUsed) {
