@@ -36,7 +36,7 @@ function(weir_plugin name)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/passes)
   set_target_properties(${target} PROPERTIES PREFIX lib OUTPUT_NAME weir_${name} LIBRARY_OUTPUT_DIRECTORY ${folder}
                                              CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
-                                             INSTALL_RPATH "$ORIGIN;$ORIGIN/..")
+                                             INSTALL_RPATH $ORIGIN)
   set(WEIR_PLUGIN_NAME ${name})
   configure_file(${WEIR_PLUGIN_TEMPLATE} ${folder}/weir_${name}.json @ONLY)
 

@@ -22,8 +22,7 @@ class Bars final : public weir::Pass {
   void prepare(weir::PrepareContext& c) override {
     const float rows = std::round(static_cast<float>(c.width()) / c.number("aspect"));
     const float bar = std::floor((static_cast<float>(c.height()) - rows) / 2);
-    if (bar < 0)
-      throw weir::InputError("the picture is wider than 'aspect' asks for: no bar fits above and below it");
+    if (bar < 0) throw weir::InputError("the picture is wider than 'aspect' asks for: no bar fits above and below it");
     weir::KernelOptions options;
     options.defines = {{"BAR_ROWS", std::to_string(static_cast<unsigned>(bar))}};
     kernel_ = c.kernel("bars.glsl", options);

@@ -16,8 +16,8 @@ namespace weir {
 
 // ---------------------------------------------------------------------------------------------------- layouts
 
-/// One field of a structured buffer's element, as LayoutOf declares it: GLSL type (float, uint, int, vec2, uvec4, …) and
-/// name.
+/// One field of a structured buffer's element, as LayoutOf declares it: GLSL type (float, uint, int, vec2, uvec4, …)
+/// and name.
 struct Field {
   const char* type;
   const char* name;

@@ -41,10 +41,9 @@ class PrivateFolder {
   fs::path root_, inner_;
 };
 
-bool contains(const fs::path& file, const std::string& words) {
+std::string bytesOf(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  return bytes.find(words) != std::string::npos;
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// Links from `to` to everything in `from`, except to what has that name. What can't be listed or linked is not there:
@@ -62,10 +61,10 @@ void linkAll(const fs::path& from, const fs::path& to, const fs::path& except) {
 fs::path copyInto(const fs::path& inner, const fs::path& library) {
   const fs::path copy = inner / library.filename(), folder = library.parent_path();
   fs::copy_file(library, copy);
-  if (contains(copy, "$ORIGIN")) {
-    linkAll(folder, inner, library.filename());
+  const std::string bytes = bytesOf(copy);
+  if (bytes.find("$ORIGIN") != std::string::npos) linkAll(folder, inner, library.filename());
+  if (bytes.find("$ORIGIN/..") != std::string::npos)
     linkAll(folder.parent_path(), inner.parent_path(), inner.filename());
-  }
   return copy;
 }
 

@@ -52,8 +52,9 @@ PluginLoader::PluginLoader(const std::vector<fs::path>& folders) {
     }
     std::string files;
     for (const PluginManifest& one : claimants) files += (files.empty() ? "" : " and ") + one.file.string();
-    problems_.push_back({name, fmt::format("{} plugins claim the name '{}': {}; none of them is used",
-                                           claimants.size() == 2 ? "two" : "several", name, files),
+    problems_.push_back({name,
+                         fmt::format("{} plugins claim the name '{}': {}; none of them is used",
+                                     claimants.size() == 2 ? "two" : "several", name, files),
                          {}});
   }
 }

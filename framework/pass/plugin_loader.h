@@ -22,8 +22,8 @@ struct PluginManifest {
 PluginManifest readManifest(const std::filesystem::path& file);
 
 struct PluginProblem {
-  std::string plugin;   ///< empty when it is about the search path
-  std::string message;  ///< complete: names the file
+  std::string plugin;              ///< empty when it is about the search path
+  std::string message;             ///< complete: names the file
   std::filesystem::path manifest;  ///< that can't be read; empty when it is about something else
 };
 

@@ -44,8 +44,8 @@ class Registry {
   /// they are destroyed, and the last one takes the old library with it. InputError when the new one is refused:
   /// everything is then as it was before.
   void reload(const std::string& plugin);
-  /// What to watch for changes: the plugin's manifest, and its library if the manifest could be read. Empty for a plugin
-  /// of the program itself and for an unknown one.
+  /// What to watch for changes: the plugin's manifest, and its library if the manifest could be read. Empty for a
+  /// plugin of the program itself and for an unknown one.
   std::vector<std::filesystem::path> pluginFiles(const std::string& plugin) const;
 
   /// Every type, sorted. Loads all plugins.

@@ -133,13 +133,13 @@ TEST_F(Installed, HeadersNeedNothingThatIsNotInstalled) {
   const fs::path project = root() / "headers";
   fs::create_directories(project);
   std::ofstream(project / "CMakeLists.txt") << "cmake_minimum_required(VERSION 3.25)\nproject(headers LANGUAGES CXX)\n"
-                                               "find_package(weir " TEST_RELEASE " CONFIG REQUIRED)\n"
+                                               "find_package(weir " TEST_RELEASE
+                                               " CONFIG REQUIRED)\n"
                                                "add_library(headers OBJECT all.cpp)\n"
                                                "target_link_libraries(headers PRIVATE weir::framework)\n";
   std::vector<std::string> headers;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(prefix() / "include"))
-    if (entry.path().extension() == ".h")
-      headers.push_back(fs::relative(entry.path(), prefix() / "include").string());
+    if (entry.path().extension() == ".h") headers.push_back(fs::relative(entry.path(), prefix() / "include").string());
   std::sort(headers.begin(), headers.end());
   EXPECT_GT(headers.size(), 40u);
   std::ofstream all(project / "all.cpp");
