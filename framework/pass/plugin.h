@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <memory>
 
 extern "C" {
 
@@ -87,7 +88,7 @@ constexpr WeirPassEntry passEntry(const char* name) {
           },
           [](const WeirErrorSink* errors) noexcept {
             Pass* made = nullptr;
-            guardedCall(errors, [&] { made = new T; });
+            guardedCall(errors, [&] { made = std::make_unique<T>().release(); });
             return made;
           },
           [](Pass* pass) noexcept { delete pass; },

@@ -59,7 +59,8 @@ void linkAll(const fs::path& from, const fs::path& to, const fs::path& except) {
 /// Copies the library. If it has a run path relative to itself, by which it finds libraries that it brought, its
 /// surroundings are there too: what lies beside it and beside its folder.
 fs::path copyInto(const fs::path& inner, const fs::path& library) {
-  const fs::path copy = inner / library.filename(), folder = library.parent_path();
+  fs::path copy = inner / library.filename();
+  const fs::path folder = library.parent_path();
   fs::copy_file(library, copy);
   const std::string bytes = bytesOf(copy);
   if (bytes.find("$ORIGIN") != std::string::npos) linkAll(folder, inner, library.filename());

@@ -166,6 +166,7 @@ TEST_F(Plugins, TwoThatClaimOneNameAreBothNamedAndNeitherIsUsed) {
   ASSERT_EQ(registry.problems().size(), 1u);
   expectRefused(registry, "good.Nothing",
                 {"two plugins claim the name 'good'", fs::canonical(first).string(), fs::canonical(second).string()});
+  EXPECT_THROW(registry.reload("good"), InputError);
 }
 
 TEST_F(Plugins, OneFolderTwiceOnThePathIsOneFolder) {
