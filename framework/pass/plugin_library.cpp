@@ -22,7 +22,10 @@ namespace fs = std::filesystem;
 class PrivateFolder {
  public:
   explicit PrivateFolder(const fs::path& innerName) {
-    std::string name = (fs::temp_directory_path() / "weir-plugin-XXXXXX").string();
+    std::error_code error;
+    const fs::path temporary = fs::temp_directory_path(error);
+    if (error) throw InputError(fmt::format("there is no folder for temporary files, see TMPDIR: {}", error.message()));
+    std::string name = (temporary / "weir-plugin-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr)
       throw InputError(fmt::format("no temporary folder {}: {}", name, std::strerror(errno)));
     root_ = name;
@@ -46,13 +49,15 @@ std::string bytesOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Links from `to` to everything in `from`, except to what has that name. What can't be listed or linked is not there:
-/// the linker says so if it was needed.
+/// Links from `to` to every library and folder in `from`, except to what has that name. What can't be listed or linked
+/// is not there: the linker says so if it was needed.
 void linkAll(const fs::path& from, const fs::path& to, const fs::path& except) {
   std::error_code error;
   for (fs::directory_iterator entry(from, error), end; !error && entry != end; entry.increment(error)) {
     std::error_code ignored;
-    if (entry->path().filename() != except) fs::create_symlink(entry->path(), to / entry->path().filename(), ignored);
+    const fs::path name = entry->path().filename();
+    const bool wanted = name.string().find(".so") != std::string::npos || entry->is_directory(ignored);
+    if (wanted && name != except) fs::create_symlink(entry->path(), to / name, ignored);
   }
 }
 

@@ -142,6 +142,20 @@ TEST_F(Plugins, AHalfWrittenLibraryIsRefusedAtEveryLength) {
   expectRefused(registry, "good.Nothing", {"no shared library for this machine"});
 }
 
+TEST_F(Plugins, WithoutATemporaryFolderThePluginIsRefused) {
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before != nullptr ? before : "";
+  ::setenv("TMPDIR", (scratch / "nowhere").c_str(), 1);
+  Registry registry({folderOf("good")});
+  expectRefused(registry, "good.Nothing", {libraryOf("good"), "temporary files", "TMPDIR"});
+  if (before != nullptr)
+    ::setenv("TMPDIR", kept.c_str(), 1);
+  else
+    ::unsetenv("TMPDIR");
+  registry.reload("good");
+  EXPECT_NE(registry.find("good.Nothing"), nullptr);
+}
+
 TEST_F(Plugins, LibrariesThatAPluginBroughtAreFound) {
   const auto expectHelped = [&](const std::string& where) {
     Registry registry({scratch / "moved"});
