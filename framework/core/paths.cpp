@@ -14,10 +14,16 @@ std::filesystem::path libraryFolder() {
   return ignored ? std::filesystem::path(info.dli_fname).parent_path() : file.parent_path();
 }
 
+std::filesystem::path resourceFolder() {
+  const std::filesystem::path own = libraryFolder();
+  std::error_code ignored;
+  return std::filesystem::is_directory(own / "weir", ignored) ? own / "weir" : own;
+}
+
 std::filesystem::path commonShaderFolder() {
   const char* given = std::getenv("WEIR_SHADERS");
   std::filesystem::path folder =
-      (given != nullptr && *given != '\0' ? std::filesystem::path(given) : libraryFolder() / "shaders") / "common";
+      (given != nullptr && *given != '\0' ? std::filesystem::path(given) : resourceFolder() / "shaders") / "common";
   if (!std::filesystem::is_directory(folder)) {
     throw InputError("no shaders at " + folder.string() + " (WEIR_SHADERS names the folder that holds 'common')");
   }

@@ -16,10 +16,17 @@ namespace weir {
 
 // ---------------------------------------------------------------------------------------------------- layouts
 
-/// One field of a structured buffer's element: GLSL type (float, uint, int, vec2, uvec4, …) and name.
+/// One field of a structured buffer's element, as LayoutOf declares it: GLSL type (float, uint, int, vec2, uvec4, …)
+/// and name.
 struct Field {
   const char* type;
   const char* name;
+};
+
+/// The same in a Layout, which owns its texts: a description outlives the library that it came from.
+struct LayoutField {
+  std::string type;
+  std::string name;
 };
 
 /// The layout of a buffer element, shared by host and shader: the GLSL struct is generated from it.
@@ -30,7 +37,7 @@ struct Layout {
   uint32_t stride = 0;     ///< bytes, by std430's rules
   uint64_t hash = 0;       ///< FNV-1a of name, version and fields
   uint32_t emptyWord = 0;  ///< 32-bit pattern that an unwritten history is filled with
-  std::vector<Field> fields;
+  std::vector<LayoutField> fields;
   std::string glsl() const;  ///< "struct Name { … };"
 };
 

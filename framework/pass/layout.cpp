@@ -7,7 +7,7 @@ namespace weir {
 
 std::string Layout::glsl() const {
   std::string text = fmt::format("struct {} {{\n", name);
-  for (const Field& field : fields) text += fmt::format("  {} {};\n", field.type, field.name);
+  for (const LayoutField& field : fields) text += fmt::format("  {} {};\n", field.type, field.name);
   return text + "};\n";
 }
 
@@ -17,10 +17,10 @@ Layout makeLayout(const char* name, uint32_t version, uint32_t emptyWord, const 
   layout.version = version;
   layout.emptyWord = emptyWord;
   layout.stride = std430Stride(fields, count);
-  layout.fields.assign(fields, fields + count);
+  for (size_t i = 0; i < count; ++i) layout.fields.push_back({fields[i].type, fields[i].name});
   // Separators keep ("ab", "c") apart from ("a", "bc").
   uint64_t hash = fnv1a(fmt::format("{} v{}", name, version));
-  for (const Field& field : layout.fields) hash = fnv1a(fmt::format(";{} {}", field.type, field.name), hash);
+  for (const LayoutField& field : layout.fields) hash = fnv1a(fmt::format(";{} {}", field.type, field.name), hash);
   layout.hash = hash;
   return layout;
 }

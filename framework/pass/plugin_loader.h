@@ -1,9 +1,8 @@
-// Finds plugins by their manifests and opens their libraries, one at a time and only when asked. Whatever is wrong with
-// a plugin is a finding about that plugin; the host and the other plugins live on.
+// Finds plugins by their manifests; plugin_library.h opens them, one at a time and only when asked. Whatever is wrong
+// with a plugin is a finding about that plugin; the host and the other plugins live on.
 #pragma once
 
-#include <weir/pass/plugin.h>
-
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -23,12 +22,13 @@ struct PluginManifest {
 PluginManifest readManifest(const std::filesystem::path& file);
 
 struct PluginProblem {
-  std::string plugin;   ///< empty when it is about the search path
-  std::string message;  ///< complete: names the file
+  std::string plugin;              ///< empty when it is about the search path
+  std::string message;             ///< complete: names the file
+  std::filesystem::path manifest;  ///< that can't be read; empty when it is about something else
 };
 
-/// Where plugins are looked for: `folders` (--plugin-path), WEIR_PLUGIN_PATH (colon separated), the folder of
-/// libweir.so.
+/// Where plugins are looked for: `folders` (--plugin-path), WEIR_PLUGIN_PATH (colon separated), then
+/// those that came with libweir.so, in resourceFolder().
 std::vector<std::filesystem::path> pluginSearchPath(const std::vector<std::string>& folders);
 
 class PluginLoader {
@@ -40,10 +40,6 @@ class PluginLoader {
   const std::map<std::string, PluginManifest>& manifests() const { return manifests_; }
   /// What was wrong with manifests and folders.
   const std::vector<PluginProblem>& problems() const { return problems_; }
-
-  /// Opens the library and compares its descriptor. Throws InputError saying what is wrong. A library is never closed:
-  /// descriptions point into it.
-  static const WeirPluginDescriptor& open(const PluginManifest& manifest);
 
  private:
   void readFolder(const std::filesystem::path& folder, std::vector<PluginManifest>& found);

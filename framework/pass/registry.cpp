@@ -1,5 +1,6 @@
 #include <weir/core/error.h>
 #include <weir/core/text.h>
+#include <weir/pass/plugin_errors.h>
 #include <weir/pass/registry.h>
 
 #include <fmt/format.h>
@@ -14,17 +15,15 @@ std::string pluginOf(const std::string& type) {
 }
 
 std::unique_ptr<PassDescription> describePass(const std::string& plugin, const WeirPassEntry& pass) {
-  if (!pass.name || !*pass.name || !pass.describe || !pass.create || !pass.destroy)
+  if (pass.name == nullptr || *pass.name == '\0' || pass.describe == nullptr || pass.create == nullptr ||
+      pass.destroy == nullptr || pass.prepare == nullptr || pass.record == nullptr)
     throw InputError(fmt::format("plugin '{}': a pass lacks its name or one of its functions", plugin));
   auto description = std::make_unique<PassDescription>();
   const std::string type = plugin + "." + pass.name;
-  try {
-    pass.describe(*description);
-  } catch (const std::exception& thrown) {
-    throw InputError(fmt::format("pass '{}': describe() threw: {}", type, thrown.what()));
-  } catch (...) {
-    throw InputError(fmt::format("pass '{}': describe() threw something that is no exception", type));
-  }
+  PluginErrors errors;
+  pass.describe(*description, errors.sink());
+  if (errors.kind() != WEIR_ERROR_NONE)
+    throw InputError(fmt::format("pass '{}': describe() threw: {}", type, errors.text()));
   description->type = type;
   description->check();
   return description;
@@ -34,23 +33,48 @@ std::unique_ptr<PassDescription> describePass(const std::string& plugin, const W
 
 Registry::Registry(const std::vector<std::filesystem::path>& pluginFolders) {
   const PluginLoader loader(pluginFolders);
-  waiting_ = loader.manifests();
+  waiting_ = manifests_ = loader.manifests();
   problems_ = loader.problems();
+  for (const PluginProblem& problem : problems_) {
+    // A manifest that can't be read is known by its file's name, so that reload() can read it again.
+    if (problem.manifest.empty() || manifests_.count(problem.plugin) != 0) continue;
+    manifests_[problem.plugin].file = problem.manifest;
+  }
+}
+
+Registry::Entries Registry::describeAll(const std::string& plugin, std::span<const WeirPassEntry> passes,
+                                        const std::shared_ptr<const PluginLibrary>& library) {
+  Entries added;
+  for (const WeirPassEntry& pass : passes) {
+    std::unique_ptr<PassDescription> description = describePass(plugin, pass);
+    const std::string type = description->type;
+    if (!added.try_emplace(type, Entry{std::move(description), pass, plugin, library}).second)
+      throw InputError(fmt::format("plugin '{}' has two passes called '{}'", plugin, pass.name));
+  }
+  return added;
+}
+
+/// Opens and describes; the error names the file.
+Registry::Entries Registry::open(const PluginManifest& manifest) {
+  try {
+    const std::shared_ptr<const PluginLibrary> library = PluginLibrary::open(manifest);
+    const WeirPluginDescriptor& descriptor = library->descriptor();
+    return describeAll(manifest.name, {descriptor.passes, descriptor.passCount}, library);
+  } catch (const InputError& bad) {
+    const std::string file = manifest.library.string(), message = bad.what();
+    const bool placed =
+        message.find(file) != std::string::npos || message.find(manifest.file.string()) != std::string::npos;
+    if (placed) throw;
+    throw InputError(fmt::format("plugin '{}' ({}): {}", manifest.name, file, message));
+  }
 }
 
 void Registry::add(const std::string& plugin, std::span<const WeirPassEntry> passes, std::filesystem::path shaders) {
   if (plugin.empty() || plugin.find('.') != std::string::npos)
     throw InputError(fmt::format("'{}' can't be the name of a plugin", plugin));
-  if (shaders_.count(plugin) || waiting_.count(plugin))
+  if (shaders_.count(plugin) != 0 || manifests_.count(plugin) != 0)
     throw InputError(fmt::format("there is a plugin '{}' already", plugin));
-  std::map<std::string, Entry> added;
-  for (const WeirPassEntry& pass : passes) {
-    std::unique_ptr<PassDescription> description = describePass(plugin, pass);
-    const std::string type = description->type;
-    if (!added.try_emplace(type, Entry{std::move(description), pass, plugin}).second)
-      throw InputError(fmt::format("plugin '{}' has two passes called '{}'", plugin, pass.name));
-  }
-  entries_.merge(added);
+  entries_.merge(describeAll(plugin, passes, nullptr));
   shaders_[plugin] = std::move(shaders);
 }
 
@@ -58,16 +82,53 @@ void Registry::load(const std::string& plugin) {
   const auto found = waiting_.find(plugin);
   if (found == waiting_.end()) return;
   const PluginManifest manifest = std::move(found->second);
-  waiting_.erase(found);  // once: a plugin that was refused stays refused
+  waiting_.erase(found);  // once: a plugin that was refused stays refused until reload()
   try {
-    const WeirPluginDescriptor& descriptor = PluginLoader::open(manifest);
-    add(plugin, {descriptor.passes, descriptor.passCount}, manifest.shaders);
+    entries_.merge(open(manifest));
+    shaders_[plugin] = manifest.shaders;
   } catch (const InputError& bad) {
-    const std::string file = manifest.library.string(), message = bad.what();
-    const bool placed =
-        message.find(file) != std::string::npos || message.find(manifest.file.string()) != std::string::npos;
-    problems_.push_back({plugin, placed ? message : fmt::format("plugin '{}' ({}): {}", plugin, file, message)});
+    problems_.push_back({plugin, bad.what(), {}});
   }
+}
+
+/// Forgets the plugin's passes, but keeps their descriptions.
+void Registry::retire(const std::string& plugin) {
+  for (auto entry = entries_.begin(); entry != entries_.end();) {
+    if (entry->second.plugin == plugin) {
+      retired_.push_back(std::move(entry->second.description));
+      entry = entries_.erase(entry);
+    } else {
+      ++entry;
+    }
+  }
+  std::erase_if(problems_, [&](const PluginProblem& problem) { return problem.plugin == plugin; });
+  waiting_.erase(plugin);
+}
+
+void Registry::reload(const std::string& plugin) {
+  const auto known = manifests_.find(plugin);
+  if (known == manifests_.end()) {
+    throw InputError(shaders_.count(plugin) != 0
+                         ? fmt::format("plugin '{}' is part of the program and can't be loaded anew", plugin)
+                         : problem(plugin + "."));
+  }
+  PluginManifest manifest = readManifest(known->second.file);
+  if (manifest.name != plugin)
+    throw InputError(
+        fmt::format("{} is the manifest of '{}' now, not of '{}'", manifest.file.string(), manifest.name, plugin));
+  Entries entries = open(manifest);
+  retire(plugin);
+  entries_.merge(entries);
+  shaders_[plugin] = manifest.shaders;
+  known->second = std::move(manifest);
+}
+
+std::vector<std::filesystem::path> Registry::pluginFiles(const std::string& plugin) const {
+  const auto known = manifests_.find(plugin);
+  if (known == manifests_.end()) return {};
+  std::vector<std::filesystem::path> files{known->second.file};
+  if (!known->second.library.empty()) files.push_back(known->second.library);
+  return files;
 }
 
 void Registry::loadAll() {
@@ -106,16 +167,7 @@ PassPtr Registry::create(const std::string& type) {
     throw InputError(fmt::format("unknown pass type '{}': {}{}", type, problem(type),
                                  nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)));
   }
-  Pass* pass = nullptr;
-  try {
-    pass = found->functions.create();
-  } catch (const std::exception& thrown) {
-    throw RuntimeError(fmt::format("pass '{}' can't be made: {}", type, thrown.what()));
-  } catch (...) {
-    throw RuntimeError(fmt::format("pass '{}' can't be made: it threw something that is no exception", type));
-  }
-  if (!pass) throw RuntimeError(fmt::format("pass '{}' can't be made: its plugin returned nothing", type));
-  return PassPtr(pass, PassDeleter{found->functions.destroy});
+  return std::make_unique<PassHandle>(found->library, found->functions, type);
 }
 
 std::vector<std::string> Registry::types() {

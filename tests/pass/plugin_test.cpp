@@ -6,56 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
+#include <iterator>
+
+#include "pass/plugin_files.h"
 
 namespace weir {
 namespace {
-
-namespace fs = std::filesystem;
-
-fs::path folderOf(const std::string& plugin) {
-  return fs::path(TEST_PLUGIN_FOLDER) / plugin;
-}
-
-std::string libraryOf(const std::string& plugin) {
-  return (folderOf(plugin) / ("libweir_" + plugin + ".so")).string();
-}
-
-class Plugins : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    scratch = fs::temp_directory_path() / (std::string("weir_plugins_") + test->name());
-    fs::remove_all(scratch);
-    fs::create_directories(scratch);
-  }
-  void TearDown() override { fs::remove_all(scratch); }
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    fs::create_directories((scratch / name).parent_path());
-    std::ofstream(scratch / name) << text;
-    return scratch / name;
-  }
-  static std::string manifest(const std::string& name, const std::string& library, const std::string& abi = "",
-                              const std::string& tag = WEIR_BUILD_TAG) {
-    return "{\"name\": \"" + name + "\", \"library\": \"" + library +
-           "\", \"abi\": " + (abi.empty() ? std::to_string(WEIR_ABI_VERSION) : abi) + ", \"buildTag\": \"" + tag +
-           "\"}";
-  }
-  fs::path scratch;
-};
-
-void expectRefused(Registry& registry, const std::string& type, const std::vector<std::string>& words) {
-  EXPECT_EQ(registry.find(type), nullptr);
-  const std::string problem = registry.problem(type);
-  for (const std::string& word : words) EXPECT_NE(problem.find(word), std::string::npos) << word << " in: " << problem;
-  try {
-    registry.create(type);
-    ADD_FAILURE() << type << " must not be made";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find(problem), std::string::npos) << error.what();
-  }
-}
 
 TEST_F(Plugins, AGoodOne) {
   Registry registry({folderOf("good")});
@@ -105,6 +61,10 @@ TEST_F(Plugins, EachWrongOneIsRefusedAndTheGoodOneLivesOn) {
       {"wrong_tag", "Nothing", {"weir-0.0-Watcom1", WEIR_BUILD_TAG}},
       {"wrong_name", "Nothing", {"calls itself 'another_name'", "'wrong_name'"}},
       {"no_symbol", "Nothing", {"does not export the function weir_plugin"}},
+      {"throws_loading", "Nothing", {"weir_plugin threw", "the licence server is away"}},
+      {"throws_loading_int", "Nothing", {"weir_plugin threw something that is no exception"}},
+      {"returns_nothing", "Nothing", {"weir_plugin returned nothing"}},
+      {"lacks_record", "Nothing", {"lacks its name or one of its functions"}},
       {"throws", "Throws", {"'throws.Throws'", "the tables are missing"}},
       {"throws", "Nothing", {"the tables are missing"}},
       {"throws_int", "Throws", {"no exception"}},
@@ -120,7 +80,7 @@ TEST_F(Plugins, EachWrongOneIsRefusedAndTheGoodOneLivesOn) {
     words.push_back(libraryOf(c.plugin));
     expectRefused(registry, std::string(c.plugin) + "." + c.pass, words);
   }
-  EXPECT_EQ(registry.problems().size(), 8u);
+  EXPECT_EQ(registry.problems().size(), 12u);
   EXPECT_EQ(registry.types().size(), 2u);
   EXPECT_NE(registry.create("good.Nothing"), nullptr);
 }
@@ -162,7 +122,55 @@ TEST_F(Plugins, AManifestOfAnotherBuildIsRefusedWithoutLoading) {
   expectRefused(registry, "old.Pass", {"ABI 77", "weir_old.json"});
   expectRefused(registry, "tag.Pass", {"yesterday", "weir_tag.json"});
   expectRefused(registry, "gone.Pass", {"does not exist", "weir_gone.json"});
-  expectRefused(registry, "text.Pass", {"can't be loaded", text.string()});
+  expectRefused(registry, "text.Pass", {"can't be loaded", "no shared library", text.string()});
+}
+
+TEST_F(Plugins, AHalfWrittenLibraryIsRefusedAtEveryLength) {
+  std::ifstream file(libraryOf("good"), std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(file), {}};
+  ASSERT_GT(whole.size(), 4000u);
+  for (size_t bytes = 0; bytes < whole.size(); bytes += 1 + whole.size() / 97) {
+    write("weir_good.json", manifest("good", "part.so"));
+    write("part.so", whole.substr(0, bytes));
+    Registry registry({scratch});
+    expectRefused(registry, "good.Nothing", {"can't be loaded", "part.so"});
+  }
+  std::string program = whole;
+  program[16] = 2;  // e_type: an executable
+  write("part.so", program);
+  Registry registry({scratch});
+  expectRefused(registry, "good.Nothing", {"no shared library for this machine"});
+}
+
+TEST_F(Plugins, WithoutATemporaryFolderThePluginIsRefused) {
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before != nullptr ? before : "";
+  ::setenv("TMPDIR", (scratch / "nowhere").c_str(), 1);
+  Registry registry({folderOf("good")});
+  expectRefused(registry, "good.Nothing", {libraryOf("good"), "temporary files", "TMPDIR"});
+  if (before != nullptr)
+    ::setenv("TMPDIR", kept.c_str(), 1);
+  else
+    ::unsetenv("TMPDIR");
+  registry.reload("good");
+  EXPECT_NE(registry.find("good.Nothing"), nullptr);
+}
+
+TEST_F(Plugins, LibrariesThatAPluginBroughtAreFound) {
+  const auto expectHelped = [&](const std::string& where) {
+    Registry registry({scratch / "moved"});
+    const PassDescription* helped = registry.find("with_helper.Helped");
+    ASSERT_NE(helped, nullptr) << where << ": " << registry.problem("with_helper.Helped");
+    EXPECT_EQ(helped->text, "from the helper");
+  };
+  fs::copy(folderOf("with_helper"), scratch / "moved");
+  expectHelped("beside it, by $ORIGIN");
+  fs::create_directory(scratch / "its_own");
+  fs::rename(scratch / "moved/libtest_plugin_helper.so", scratch / "its_own/libtest_plugin_helper.so");
+  expectHelped("beside its folder, by $ORIGIN/../its_own");
+  fs::remove_all(scratch / "its_own");
+  Registry registry({scratch / "moved"});
+  expectRefused(registry, "with_helper.Helped", {"libtest_plugin_helper.so", "libweir_with_helper.so"});
 }
 
 TEST_F(Plugins, TwoThatClaimOneNameAreBothNamedAndNeitherIsUsed) {
@@ -172,6 +180,7 @@ TEST_F(Plugins, TwoThatClaimOneNameAreBothNamedAndNeitherIsUsed) {
   ASSERT_EQ(registry.problems().size(), 1u);
   expectRefused(registry, "good.Nothing",
                 {"two plugins claim the name 'good'", fs::canonical(first).string(), fs::canonical(second).string()});
+  EXPECT_THROW(registry.reload("good"), InputError);
 }
 
 TEST_F(Plugins, OneFolderTwiceOnThePathIsOneFolder) {

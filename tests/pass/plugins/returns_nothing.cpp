@@ -1,0 +1,5 @@
+#include <weir/pass/plugin.h>
+
+extern "C" __attribute__((visibility("default"))) const WeirPluginDescriptor* weir_plugin() {
+  return nullptr;
+}
