@@ -41,14 +41,19 @@ class CycleFinder {
     if (isFree()) return;
     findTangles();
     for (uint32_t n = 0; n < checked_.nodes.size(); ++n) {
+      bool split = false;
       for (std::vector<size_t> cycle = path(n, n); !cycle.empty(); cycle = path(n, n)) {
         const size_t culprit = findCulprit(cycle);
         std::vector<size_t> rest = path(edges_[culprit].to, edges_[culprit].from);
         if (left_ == 0) break;
         say(culprit, rest);
         edges_[culprit].removed = true;
+        split = true;
       }
-      if (left_ > 0) continue;
+      if (left_ > 0) {
+        if (split) splitTangle(tangle_[n]);
+        continue;
+      }
       findings_.add(checked_.nodes[n].entry->line, "passes." + checked_.nodes[n].name(),
                     "the passes form very many cycles; expected none, and those that are listed to be mended first");
       return;
@@ -75,18 +80,30 @@ class CycleFinder {
     reachedIn_.resize(nodes, 0);
     visit_.resize(nodes);
     tangle_.assign(nodes, 0);
-    std::vector<uint32_t> all(nodes);
-    std::iota(all.begin(), all.end(), 0u);
-    components(all);
-    uint32_t tangles = 0;
-    for (uint32_t n = 0; n < nodes; ++n) tangles = std::max(tangles, (tangle_[n] = visit_[n].component) + 1);
-    members_.resize(tangles);
-    for (uint32_t n = 0; n < nodes; ++n) members_[tangle_[n]].push_back(n);
+    members_.resize(1);
+    members_[0].resize(nodes);
+    std::iota(members_[0].begin(), members_[0].end(), 0u);
+    splitTangle(0);
   }
 
-  /// Tarjan 1972, without recursion: strongly connected components of some passes, along edges that stay in a tangle.
-  void components(const std::vector<uint32_t>& nodes) {
+  /// With some of its edges gone, a tangle may be several.
+  void splitTangle(uint32_t tangle) {
+    const std::vector<uint32_t> nodes = std::move(members_[tangle]);
+    const uint32_t parts = components(nodes);
+    const auto firstNew = static_cast<uint32_t>(members_.size());
+    members_[tangle].clear();
+    members_.resize(members_.size() + parts - 1);
+    for (const uint32_t n : nodes) {
+      const uint32_t part = visit_[n].component;
+      tangle_[n] = part == 0 ? tangle : firstNew + part - 1;
+      members_[tangle_[n]].push_back(n);
+    }
+  }
+
+  /// Tarjan 1972, without recursion: strongly connected components of a tangle's passes. How many comes back.
+  uint32_t components(const std::vector<uint32_t>& nodes) {
     for (const uint32_t n : nodes) visit_[n] = {};
+    left_ -= std::min<uint64_t>(left_, nodes.size());
     std::vector<uint32_t> path, open;
     uint32_t order = 0, component = 0;
     for (const uint32_t root : nodes) {
@@ -119,6 +136,7 @@ class CycleFinder {
         ++component;
       }
     }
+    return component;
   }
 
   /// The shortest path of at least one edge, as edge indices; empty when there is none, or no more budget.
@@ -210,7 +228,7 @@ class CycleFinder {
   std::vector<size_t> reachedBy_;    ///< by pass: the edge, in the search that
   std::vector<uint64_t> reachedIn_;  ///< this says
   uint64_t search_ = 0;
-  uint64_t left_ = 50'000'000;  ///< edges to look at before giving up
+  uint64_t left_ = 10'000'000;  ///< edges and passes to look at before giving up
 };
 
 }  // namespace

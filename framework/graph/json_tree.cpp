@@ -108,7 +108,7 @@ class Builder {
       if (const size_t colon = reason.find(": ", place); colon != std::string::npos) reason.erase(0, colon + 2);
     if (reason.starts_with("[json"))
       if (const size_t bracket = reason.find("] "); bracket != std::string::npos) reason.erase(0, bracket + 2);
-    if (reason.starts_with("number overflow")) reason = fmt::format("the number {} is too large", shortened(token));
+    if (reason.starts_with("number overflow")) reason = fmt::format("the number {} is too large", shortened(token, 60));
     return fail("not valid JSON: " + shortened(reason));
   }
 
@@ -137,14 +137,13 @@ class Builder {
   };
 
   static std::string tooLong(const char* what, const std::string& text, size_t most) {
-    return fmt::format("a {} of {} bytes, '{}'; expected at most {}", what, text.size(), shortened(text), most);
+    return fmt::format("a {} of {} bytes, '{}'; expected at most {}", what, text.size(), shortened(text, 60), most);
   }
 
   /// The beginning of a long text, cut between characters.
-  static std::string shortened(const std::string& text) {
-    constexpr size_t kMost = 200;
-    if (text.size() <= kMost) return text;
-    size_t end = kMost;
+  static std::string shortened(const std::string& text, size_t most = 200) {
+    if (text.size() <= most) return text;
+    size_t end = most;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;
     return text.substr(0, end) + "…";
   }

@@ -23,7 +23,7 @@ class NearestNames {
   std::string find(const std::string& name, const std::vector<std::string>& among);
 
  private:
-  uint64_t left_ = 100'000'000;  ///< pairs of characters to compare
+  uint64_t left_ = 20'000'000;  ///< pairs of characters to compare
 };
 
 /// The names of named things.
