@@ -228,7 +228,7 @@ class CycleFinder {
   std::vector<size_t> reachedBy_;    ///< by pass: the edge, in the search that
   std::vector<uint64_t> reachedIn_;  ///< this says
   uint64_t search_ = 0;
-  uint64_t left_ = 10'000'000;  ///< edges and passes to look at before giving up
+  uint64_t left_ = 4'000'000;  ///< edges and passes to look at before giving up
 };
 
 }  // namespace
