@@ -39,13 +39,14 @@ std::string disabledReason(const Checked& checked, const Node& node) {
   return "it is disabled" + text;
 }
 
-/// By pass: who reads it, in this frame or the last, running or not.
+/// By pass: who reads it, in this frame or the last, running or not; disabled passes read what they would if enabled.
 std::vector<std::vector<uint32_t>> findReaders(const Checked& checked) {
   std::vector<std::vector<uint32_t>> readers(checked.nodes.size());
   for (uint32_t n = 0; n < checked.nodes.size(); ++n)
     for (const Link& link : checked.nodes[n].links) {
-      if (link.resolved.node == kNone || link.resolved.provided != kNone) continue;
-      std::vector<uint32_t>& list = readers[link.resolved.node];
+      const Source& source = checked.nodes[n].enabled() ? link.resolved : link.written;
+      if (source.node == kNone || source.provided != kNone) continue;
+      std::vector<uint32_t>& list = readers[source.node];
       if (list.empty() || list.back() != n) list.push_back(n);
     }
   return readers;
