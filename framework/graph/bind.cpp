@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 namespace weir::graph {
 namespace {
@@ -23,17 +24,15 @@ class Binder {
   Binder(const PassCatalog& catalog, Findings& findings) : catalog_(catalog), findings_(findings) {}
 
   Checked bind(const Description& description) {
-    checked_.nodes.reserve(description.passes.size());
+    std::vector<Node> nodes;
+    nodes.reserve(description.passes.size());
     for (const PassEntry& entry : description.passes) {
-      Node node;
+      Node& node = nodes.emplace_back();
       node.entry = &entry;
       node.type = findType(entry);
       if (node.type) bindParams(node, findings_);
-      checked_.nodes.push_back(std::move(node));
     }
-    // By name: the file's order means nothing, so nothing may come of it.
-    std::sort(checked_.nodes.begin(), checked_.nodes.end(),
-              [](const Node& a, const Node& b) { return a.name() < b.name(); });
+    sortByName(std::move(nodes));
     for (Node& node : checked_.nodes) bindInputs(node);
     for (const OutputEntry& entry : description.outputs) {
       OutputLink link{&entry, {}, {}};
@@ -45,6 +44,20 @@ class Binder {
   }
 
  private:
+  /// The file's order means nothing, so nothing may come of it.
+  void sortByName(std::vector<Node> nodes) {
+    std::vector<std::pair<std::string_view, Node*>> order;
+    order.reserve(nodes.size());
+    for (Node& node : nodes) order.emplace_back(node.name(), &node);
+    std::sort(order.begin(), order.end());
+    checked_.nodes.reserve(nodes.size());
+    byName_.reserve(nodes.size());
+    for (const auto& [name, node] : order) {
+      byName_.emplace(name, static_cast<uint32_t>(checked_.nodes.size()));
+      checked_.nodes.push_back(std::move(*node));
+    }
+  }
+
   const PassDescription* findType(const PassEntry& entry) {
     if (entry.type.empty()) return nullptr;  // said by the parser
     const auto [known, isNew] = types_.try_emplace(entry.type, nullptr);
@@ -110,24 +123,23 @@ class Binder {
   Source find(const Reference& reference, int line, const PathOf& path) {
     Source source;
     source.previous = reference.previous;
-    const auto& nodes = checked_.nodes;
-    const auto node = std::lower_bound(nodes.begin(), nodes.end(), reference.pass,
-                                       [](const Node& n, const std::string& name) { return n.name() < name; });
-    if (node == nodes.end() || node->name() != reference.pass) {
+    const auto found = byName_.find(reference.pass);
+    if (found == byName_.end()) {
       if (passNames_.empty())
-        for (const Node& n : nodes) passNames_.push_back(n.name());
+        for (const Node& n : checked_.nodes) passNames_.push_back(n.name());
       findings_.add(line, path(),
                     fmt::format("there is no pass '{}'; the graph has: {}", reference.pass, listed(passNames_)),
                     nearest_.find(reference.pass, passNames_));
       return source;
     }
-    source.node = static_cast<uint32_t>(node - nodes.begin());
-    if (!node->type) return source;
-    source.output = indexOf(node->type->outputs, reference.port);
+    source.node = found->second;
+    const PassDescription* type = checked_.nodes[source.node].type;
+    if (!type) return source;
+    source.output = indexOf(type->outputs, reference.port);
     if (source.output == kNone) {
-      const std::vector<std::string> names = namesOf(node->type->outputs);
+      const std::vector<std::string> names = namesOf(type->outputs);
       findings_.add(line, path(),
-                    fmt::format("pass '{}' ({}) has no output '{}'; it has: {}", reference.pass, node->type->type,
+                    fmt::format("pass '{}' ({}) has no output '{}'; it has: {}", reference.pass, type->type,
                                 reference.port, listed(names)),
                     nearest_.find(reference.port, names));
     }
@@ -141,6 +153,7 @@ class Binder {
   const PassCatalog& catalog_;
   Findings& findings_;
   Checked checked_;
+  std::unordered_map<std::string_view, uint32_t> byName_;               ///< nodes, by their entries' texts
   std::unordered_map<std::string_view, const PassDescription*> types_;  ///< that were asked for, by the entries' texts
   std::vector<std::string> typeNames_, passNames_;                      ///< once a message needs them
   NearestNames nearest_;
