@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes docs/passes.md from what the passes say of themselves. Standard library only.
+"""Writes docs/passes.md and docs/graph.schema.json from what the passes say of themselves. Standard library only.
 
-    tools/passes_doc.py build/release/bin/weir            writes docs/passes.md
-    tools/passes_doc.py --check build/release/bin/weir    exit status 1 if it isn't current
+    tools/passes_doc.py build/release/bin/weir            writes both
+    tools/passes_doc.py --check build/release/bin/weir    exit status 1 if one isn't current
 """
 import argparse
 import json
@@ -11,7 +11,8 @@ import subprocess
 import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-TARGET = os.path.join(ROOT, "docs", "passes.md")
+PASSES = os.path.join(ROOT, "docs", "passes.md")
+SCHEMA = os.path.join(ROOT, "docs", "graph.schema.json")
 HEAD = """# Passes
 
 Written by `tools/passes_doc.py` from `weir passes --json`; don't edit it. Every pass of the plugins that come with Weir:
@@ -81,24 +82,27 @@ def section(entry):
     return text
 
 
+def run(*command):
+    """What the program prints, of the plugins that come with it."""
+    environment = {k: v for k, v in os.environ.items() if k != "WEIR_PLUGIN_PATH"}
+    return subprocess.run(command, capture_output=True, text=True, check=True, env=environment).stdout
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("weir", help="the program")
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
-    environment = {k: v for k, v in os.environ.items() if k != "WEIR_PLUGIN_PATH"}
-    said = json.loads(subprocess.run([options.weir, "passes", "--json"], capture_output=True, text=True, check=True,
-                                     env=environment).stdout)
+    said = json.loads(run(options.weir, "passes", "--json"))
     if said["problems"]:
         sys.exit("passes_doc.py: " + "; ".join(p["message"] for p in said["problems"]))
-    text = HEAD + "".join(section(entry) for entry in said["passes"])
-    if options.check:
-        with open(TARGET, encoding="utf-8") as file:
-            if file.read() != text:
-                sys.exit("docs/passes.md is not current: run tools/passes_doc.py " + os.path.relpath(options.weir, ROOT))
-        return
-    with open(TARGET, "w", encoding="utf-8") as file:
-        file.write(text)
+    files = {PASSES: HEAD + "".join(section(entry) for entry in said["passes"]), SCHEMA: run(options.weir, "graph", "schema")}
+    for path, text in files.items():
+        if not options.check:
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+        elif not os.path.exists(path) or open(path, encoding="utf-8").read() != text:
+            sys.exit(f"{os.path.relpath(path, ROOT)} is not current: run tools/passes_doc.py " + os.path.relpath(options.weir, ROOT))
 
 
 if __name__ == "__main__":

@@ -33,8 +33,10 @@ std::string nearestName(std::string_view name, const std::vector<std::string>& c
   std::string best;
   int bestDistance = 1 << 30;
   for (const std::string& candidate : candidates) {
+    const auto [shorter, longer] = std::minmax({name.size(), candidate.size()});
+    const int allowed = std::max(2, static_cast<int>(longer) / 3);
+    if (longer - shorter > static_cast<size_t>(allowed)) continue;  // at least as many letters are missing
     const int distance = editDistance(name, candidate);
-    const int allowed = std::max(2, static_cast<int>(std::max(name.size(), candidate.size())) / 3);
     if (distance <= allowed && distance < bestDistance) {
       best = candidate;
       bestDistance = distance;

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
-#include <map>
+#include <unordered_map>
 
 namespace weir::graph {
 
@@ -77,7 +77,10 @@ class Builder {
     return scalar(static_cast<int64_t>(value));
   }
   bool number_float(double value, const std::string&) { return scalar(value); }
-  bool string(std::string& value) { return scalar(std::move(value)); }
+  bool string(std::string& value) {
+    if (value.size() > kLongestText) return fail(tooLong("text", value, kLongestText));
+    return scalar(std::move(value));
+  }
   bool binary(nlohmann::json::binary_t&) { return false; }  // no such thing in JSON text
 
   bool start_object(size_t) { return open(JsonValue::Kind::Object); }
@@ -88,13 +91,13 @@ class Builder {
   bool key(std::string& name) {
     Level& level = levels_.back();
     level.line = position_.lineOfLastRead();
+    if (name.size() > kLongestKey) return fail(tooLong("key", name, kLongestKey));
     level.key = std::move(name);
-    const auto [first, isNew] = level.firstLines.try_emplace(level.key, level.line);
-    level.repeated = !isNew;
+    const int first = level.lineOf(level.key);
+    level.repeated = first > 0;
     if (level.repeated)
       diagnostics_.push_back({file_, level.line, path(),
-                              fmt::format("key '{}' is repeated; it is first on line {}", level.key, first->second),
-                              ""});
+                              fmt::format("key '{}' is repeated; it is first on line {}", level.key, first), ""});
     return true;
   }
 
@@ -105,8 +108,8 @@ class Builder {
       if (const size_t colon = reason.find(": ", place); colon != std::string::npos) reason.erase(0, colon + 2);
     if (reason.starts_with("[json"))
       if (const size_t bracket = reason.find("] "); bracket != std::string::npos) reason.erase(0, bracket + 2);
-    if (reason.starts_with("number overflow")) reason = fmt::format("the number {} is too large", token);
-    return fail("not valid JSON: " + reason);
+    if (reason.starts_with("number overflow")) reason = fmt::format("the number {} is too large", shortened(token, 60));
+    return fail("not valid JSON: " + shortened(reason));
   }
 
  private:
@@ -116,8 +119,34 @@ class Builder {
     std::string key;  ///< of the member being read
     int line = 0;     ///< of that key
     bool repeated = false;
-    std::map<std::string, int> firstLines;  ///< of every key so far
+    std::unordered_map<std::string, int> lines;  ///< of the members' keys, once there are many
+
+    /// The line of the member of that name; 0 when there is none.
+    int lineOf(const std::string& name) {
+      constexpr size_t kMany = 16;
+      if (value.members.size() < kMany) {
+        for (const JsonMember& member : value.members)
+          if (member.key == name) return member.line;
+        return 0;
+      }
+      for (size_t i = lines.size(); i < value.members.size(); ++i)
+        lines.emplace(value.members[i].key, value.members[i].line);
+      const auto found = lines.find(name);
+      return found == lines.end() ? 0 : found->second;
+    }
   };
+
+  static std::string tooLong(const char* what, const std::string& text, size_t most) {
+    return fmt::format("a {} of {} bytes, '{}'; expected at most {}", what, text.size(), shortened(text, 60), most);
+  }
+
+  /// The beginning of a long text, cut between characters.
+  static std::string shortened(const std::string& text, size_t most = 200) {
+    if (text.size() <= most) return text;
+    size_t end = most;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;
+    return text.substr(0, end) + "…";
+  }
 
   bool fail(std::string message) {
     diagnostics_.push_back({file_, position_.lineOfLastRead(), path(), std::move(message), ""});

@@ -3,6 +3,7 @@
 
 #include <weir/graph/description.h>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,10 @@ struct JsonMember {
 
 /// Objects inside objects deeper than this are refused.
 inline constexpr int kDeepestJson = 64;
+/// Longer keys and texts, in bytes, are refused: they are repeated in paths and messages.
+inline constexpr size_t kLongestKey = 1024, kLongestText = 65536;
 
-/// False, with a diagnostic, when the text is no JSON or too deep. Repeated keys are diagnostics too, but do not stop
+/// False, with a diagnostic, when the text is no JSON, too deep, or has an overlong key or text. Repeated keys are diagnostics too, but do not stop
 /// the reading. The elements of arrays are checked and dropped: no graph file has any.
 bool readJson(const std::string& text, const std::string& file, JsonValue& root, std::vector<Diagnostic>& diagnostics);
 

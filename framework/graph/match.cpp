@@ -16,7 +16,7 @@ class Matcher {
       state_.emplace_back(node.perPixel.size(), State::Unknown);
     }
     for (uint32_t n = 0; n < checked_.nodes.size(); ++n)
-      for (uint32_t o = 0; o < checked_.nodes[n].perPixel.size(); ++o) count(n, o, false);
+      for (uint32_t o = 0; o < checked_.nodes[n].perPixel.size(); ++o) count(n, o);
     for (const Node& node : checked_.nodes)
       for (const Link& link : node.links) matchLink(node, link);
   }
@@ -36,45 +36,55 @@ class Matcher {
   };
 
   /// A circle within one frame is findCycles()'s to report, once; left for here are those through last frame's values.
-  bool isReportedAsCycle(uint32_t n, uint32_t o, bool previous) const {
-    bool everPrevious = previous;
-    for (size_t i = path_.size(); i-- > 0 && (path_[i].node != n || path_[i].output != o);)
+  bool isReportedAsCycle(const Step& again) const {
+    bool everPrevious = again.previous;
+    for (size_t i = path_.size(); i-- > 0 && (path_[i].node != again.node || path_[i].output != again.output);)
       everPrevious |= path_[i].previous;
-    return checked_.nodes[n].enabled() && !everPrevious;
+    return checked_.nodes[again.node].enabled() && !everPrevious;
   }
 
-  /// Elements a pixel of an output; 0 when it can't be known.
-  uint32_t count(uint32_t n, uint32_t o, bool previous) {
-    Node& node = checked_.nodes[n];
-    State& state = state_[n][o];
-    if (state == State::Known) return node.perPixel[o];
-    const PortDescription& port = node.type->outputs[o];
-    if (state == State::Asked) {
-      if (!isReportedAsCycle(n, o, previous))
-        findings_.add(
-            node.entry->line, "passes." + node.name(),
-            fmt::format("the count of elements of output '{}' depends on itself, by way of its inputs", port.name));
-      state = State::Known;
-      return 0;
+  /// Finds the elements a pixel of an output, and of all those whose count it has; 0 when it can't be known.
+  void count(uint32_t n, uint32_t o) {
+    uint32_t found = 0;
+    path_.clear();
+    for (Step at{n, o, false};;) {
+      Node& node = checked_.nodes[at.node];
+      State& state = state_[at.node][at.output];
+      const PortDescription& port = node.type->outputs[at.output];
+      if (state == State::Known) {
+        found = node.perPixel[at.output];
+        break;
+      }
+      if (state == State::Asked) {
+        if (!isReportedAsCycle(at))
+          findings_.add(
+              node.entry->line, "passes." + node.name(),
+              fmt::format("the count of elements of output '{}' depends on itself, by way of its inputs", port.name));
+        break;
+      }
+      state = State::Asked;
+      path_.push_back(at);
+      if (port.type.perPixelFromParam.empty() && !port.type.perPixelFromInput.empty()) {
+        const Source source = countedSource(node, port);
+        if (!source.known()) break;
+        at = {source.node, source.output, source.previous};
+        continue;
+      }
+      found = port.type.perPixelFromParam.empty() ? port.type.perPixel : countFromParam(node, port);
+      break;
     }
-    state = State::Asked;
-    path_.push_back({n, o, previous});
-    const uint32_t found = findCount(node, port);
-    path_.pop_back();
-    state = State::Known;
-    return node.perPixel[o] = found;
+    for (const Step& step : path_) {
+      state_[step.node][step.output] = State::Known;
+      checked_.nodes[step.node].perPixel[step.output] = found;
+    }
   }
 
-  uint32_t findCount(const Node& node, const PortDescription& port) {
-    const PortType& type = port.type;
-    if (!type.perPixelFromParam.empty()) return countFromParam(node, port);
-    if (type.perPixelFromInput.empty()) return type.perPixel;
-    for (const Link& link : node.links) {
-      if (link.input == kNone || node.type->inputs[link.input].name != type.perPixelFromInput) continue;
-      const Source& source = sourceOf(node, link);
-      return source.known() ? count(source.node, source.output, source.previous) : 0;
-    }
-    return 0;
+  /// What is connected to the input whose count an output has.
+  static Source countedSource(const Node& node, const PortDescription& port) {
+    for (const Link& link : node.links)
+      if (link.input != kNone && node.type->inputs[link.input].name == port.type.perPixelFromInput)
+        return sourceOf(node, link);
+    return {};
   }
 
   uint32_t countFromParam(const Node& node, const PortDescription& port) {
@@ -137,7 +147,7 @@ class Matcher {
   Checked& checked_;
   Findings& findings_;
   std::vector<std::vector<State>> state_;
-  std::vector<Step> path_;  // of the counts that are Asked, in order
+  std::vector<Step> path_;  ///< of the counts that are Asked, in order
 };
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <weir/core/text.h>
 #include <weir/graph/names.h>
 
 #include <fmt/format.h>
@@ -10,6 +11,14 @@ bool isName(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
+}
+
+std::string NearestNames::find(const std::string& name, const std::vector<std::string>& among) {
+  for (const std::string& candidate : among) {
+    left_ -= std::min<uint64_t>(left_, (name.size() + 1) * (candidate.size() + 1));
+    if (left_ == 0) return "";
+  }
+  return nearestName(name, among);
 }
 
 std::string listed(const std::vector<std::string>& names) {

@@ -39,15 +39,24 @@ std::string disabledReason(const Checked& checked, const Node& node) {
   return "it is disabled" + text;
 }
 
-std::string unreadReason(const Checked& checked, uint32_t unread) {
+/// By pass: who reads it, in this frame or the last, running or not; disabled passes read what they would if enabled.
+std::vector<std::vector<uint32_t>> findReaders(const Checked& checked) {
+  std::vector<std::vector<uint32_t>> readers(checked.nodes.size());
+  for (uint32_t n = 0; n < checked.nodes.size(); ++n)
+    for (const Link& link : checked.nodes[n].links) {
+      const Source& source = checked.nodes[n].enabled() ? link.resolved : link.written;
+      if (source.node == kNone || source.provided != kNone) continue;
+      std::vector<uint32_t>& list = readers[source.node];
+      if (list.empty() || list.back() != n) list.push_back(n);
+    }
+  return readers;
+}
+
+std::string unreadReason(const Checked& checked, uint32_t unread, const std::vector<uint32_t>& readBy) {
   std::vector<std::string> readers;
-  for (const Node& node : checked.nodes)
-    for (const Link& link : node.links)
-      if (link.resolved.node == unread && link.resolved.provided == kNone &&
-          (readers.empty() || readers.back() != node.name()))
-        readers.push_back(node.name());
   for (const Source& provided : checked.provided)
     if (provided.node == unread) return "the host provides what is read of it";
+  for (const uint32_t reader : readBy) readers.push_back(checked.nodes[reader].name());
   if (readers.empty()) return "nothing reads it";
   return fmt::format("no output depends on it: only {} read{} it, and {} skipped too", listed(readers),
                      readers.size() == 1 ? "s" : "", readers.size() == 1 ? "is" : "are");
@@ -79,12 +88,14 @@ Order orderPasses(const Checked& checked) {
       if (--waitsFor[reader] == 0) ready.push(reader);
   }
 
+  if (order.nodes.size() == checked.nodes.size()) return order;
+  const std::vector<std::vector<uint32_t>> readBy = findReaders(checked);
   for (uint32_t n = 0; n < checked.nodes.size(); ++n) {
     const Node& node = checked.nodes[n];
     if (!node.enabled())
       order.skipped.push_back({node.name(), disabledReason(checked, node)});
     else if (!live[n])
-      order.skipped.push_back({node.name(), unreadReason(checked, n)});
+      order.skipped.push_back({node.name(), unreadReason(checked, n, readBy[n])});
   }
   return order;
 }

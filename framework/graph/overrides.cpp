@@ -1,5 +1,4 @@
 // What the command line changes in a graph: --set, --enable, --disable.
-#include <weir/core/text.h>
 #include <weir/graph/description.h>
 #include <weir/graph/names.h>
 
@@ -8,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 namespace weir::graph {
 namespace {
@@ -20,11 +20,20 @@ std::optional<T> number(const std::string& text) {
   return value;
 }
 
+/// A number too near to zero for a double, which a file may have too; from_chars has no value for it.
+bool isTiny(const std::string& text) {
+  double unused = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), unused);
+  return error == std::errc::result_out_of_range && end == text.data() + text.size() &&
+         std::abs(std::strtod(text.c_str(), nullptr)) < 1;
+}
+
 RawValue parseValue(const std::string& text) {
   if (text == "true") return true;
   if (text == "false") return false;
   if (const auto whole = number<int64_t>(text)) return *whole;
   if (const auto real = number<double>(text); real && std::isfinite(*real)) return *real;
+  if (isTiny(text)) return 0.0;
   return text;
 }
 
@@ -70,15 +79,17 @@ class Applier {
     PassEntry* pass = d_.find(name);
     // When the file could not be read, nothing is known about its passes.
     if (!pass && !d_.broken) {
-      const std::vector<std::string> names = namesOf(d_.passes);
-      add(flag, name, fmt::format("there is no pass '{}' in the graph; it has: {}", name, listed(names)),
-          nearestName(name, names));
+      if (names_.empty()) names_ = namesOf(d_.passes);
+      add(flag, name, fmt::format("there is no pass '{}' in the graph; it has: {}", name, listed(names_)),
+          nearest_.find(name, names_));
     }
     return pass;
   }
 
   Description& d_;
   std::vector<Diagnostic>& diagnostics_;
+  std::vector<std::string> names_;  ///< of the passes, once a message needs them
+  NearestNames nearest_;
 };
 
 }  // namespace

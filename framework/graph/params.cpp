@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace weir::graph {
 namespace {
@@ -86,22 +87,24 @@ std::string quoted(const ParamEntry& entry) {
 
 void bindParams(Node& node, Findings& findings) {
   for (const ParamDescription& param : node.type->params) node.params[param.name] = param.defaultValue;
+  const auto path = [&](const ParamEntry& entry) {
+    return fmt::format("passes.{}.params.{}", node.name(), entry.name);
+  };
   for (const ParamEntry& entry : node.entry->params) {
-    const std::string path = fmt::format("passes.{}.params.{}", node.name(), entry.name);
     const ParamDescription* param = node.type->findParam(entry.name);
     if (!param) {
       const std::vector<std::string> names = namesOf(node.type->params);
-      findings.add(entry.nameLine, path,
+      findings.add(entry.nameLine, path(entry),
                    fmt::format("unknown parameter '{}'; {} has: {}", entry.name, node.type->type, listed(names)),
                    nearestName(entry.name, names), entry.origin);
       continue;
     }
-    if (const std::optional<ParamValue> value = convert(*param, entry)) {
-      node.params[param->name] = *value;
+    if (std::optional<ParamValue> value = convert(*param, entry)) {
+      node.params[param->name] = std::move(*value);
       continue;
     }
     const std::string nearest = param->type == ParamType::Enum ? nearestName(toText(entry.value), param->choices) : "";
-    findings.add(entry.line, path,
+    findings.add(entry.line, path(entry),
                  fmt::format("bad value {} for '{}'; expected {}", quoted(entry), entry.name, expectedText(*param)),
                  nearest, entry.origin);
   }

@@ -7,10 +7,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
+#include <span>
 
 namespace weir::graph {
 namespace {
@@ -34,70 +35,100 @@ class Parser {
   Description graph(const JsonValue& root) {
     d_.name = std::filesystem::path(d_.file).stem().string();
     if (!root.isObject()) {
-      add(root.line, "", fmt::format("a graph must be a JSON object, not {}", kind(root)));
+      add(root.line, {}, fmt::format("a graph must be a JSON object, not {}", kind(root)));
       d_.broken = true;
       return std::move(d_);
     }
-    bool hasVersion = false, hasPasses = false, hasOutputs = false;
-    const Keys keys(*this, root, "", {"version", "name", "passes", "outputs", "$schema", "description"});
-    for (const auto& [key, member] : keys.members()) {
-      const JsonValue& value = member->value;
-      if (key == "version") hasVersion = true, version(value);
-      if (key == "name" && expectText(value, "name")) d_.name = *as<std::string>(value);
-      if (key == "passes") hasPasses = passes(value);
-      if (key == "outputs") hasOutputs = true, outputs(value);
-      if (key == "$schema" || key == "description") expectText(value, key);
-    }
-    if (!hasVersion) add(root.line, "version", fmt::format("is missing; expected \"version\": {}", kVersion));
-    if (!hasPasses && !keys.has("passes")) add(root.line, "passes", "is missing; expected an object of passes");
-    if (!hasOutputs)
-      add(root.line, "outputs", "is missing; expected an object of at least one output, as \"color\": \"pass.port\"");
+    bool hasPasses = false;
+    static constexpr std::string_view kKeys[] = {"version", "name", "passes", "outputs", "$schema", "description"};
+    const Path top;
+    const Keys keys(*this, root, top, kKeys);
+    // By name, as everywhere: what is said first must not depend on the file's order.
+    for (const char* key : {"$schema", "description"})
+      if (const JsonMember* member = keys.find(key)) expectText(member->value, {&top, key});
+    if (const JsonMember* name = keys.find("name"); name && expectText(name->value, {&top, "name"}))
+      d_.name = *as<std::string>(name->value);
+    if (const JsonMember* member = keys.find("outputs")) outputs(member->value, {&top, "outputs"});
+    if (const JsonMember* member = keys.find("passes")) hasPasses = passes(member->value, {&top, "passes"});
+    if (const JsonMember* member = keys.find("version")) version(member->value);
+    if (!keys.find("version")) add(root.line, {nullptr, "version"}, fmt::format("is missing; expected \"version\": {}", kVersion));
+    if (!keys.find("passes")) add(root.line, {nullptr, "passes"}, "is missing; expected an object of passes");
+    if (!keys.find("outputs"))
+      add(root.line, {nullptr, "outputs"}, "is missing; expected an object of at least one output, as \"color\": \"pass.port\"");
     d_.broken = !hasPasses;
     return std::move(d_);
   }
 
  private:
+  /// "passes.a.inputs.x", put together only where something is said of it.
+  struct Path {
+    const Path* above = nullptr;
+    std::string_view key;
+    std::string text() const {
+      std::string before = above ? above->text() : "";
+      if (!before.empty()) before += '.';
+      return before.append(key);
+    }
+  };
+
   /// The members of an object by known key. An unknown key is reported, and where it is a likely slip for a key that is
   /// absent, its value is read as that key's, so that one slip stays one finding.
   class Keys {
    public:
-    Keys(Parser& parser, const JsonValue& object, const std::string& path, const std::vector<std::string>& known) {
-      for (const JsonMember& member : object.members)
-        if (std::find(known.begin(), known.end(), member.key) != known.end()) members_[member.key] = &member;
+    Keys(Parser& parser, const JsonValue& object, const Path& path, std::span<const std::string_view> known)
+        : known_(known) {
+      bool allKnown = true;
       for (const JsonMember& member : object.members) {
-        if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
-        const std::string nearest = nearestName(member.key, known);
-        parser.add(member.line, join(path, member.key),
-                   fmt::format("unknown key '{}'; expected one of: {}", member.key, listed(known)), nearest);
-        if (!nearest.empty() && wouldFit(nearest, member.value)) members_.try_emplace(nearest, &member);
+        const size_t at = indexOf(member.key);
+        if (at < known.size())
+          members_[at] = &member;
+        else
+          allKnown = false;
       }
+      if (!allKnown) report(parser, object, path);
     }
-    const std::map<std::string, const JsonMember*>& members() const { return members_; }
-    bool has(const std::string& key) const { return members_.count(key) > 0; }
+    const JsonMember* find(std::string_view key) const { return members_[indexOf(key)]; }
 
    private:
+    static constexpr size_t kMost = 6;
+
+    size_t indexOf(std::string_view key) const {
+      return static_cast<size_t>(std::find(known_.begin(), known_.end(), key) - known_.begin());
+    }
+
+    void report(Parser& parser, const JsonValue& object, const Path& path) {
+      const std::vector<std::string> known(known_.begin(), known_.end());
+      for (const JsonMember& member : object.members) {
+        if (indexOf(member.key) < known.size()) continue;
+        const std::string nearest = nearestName(member.key, known);
+        parser.add(member.line, {&path, member.key},
+                   fmt::format("unknown key '{}'; expected one of: {}", member.key, listed(known)), nearest);
+        if (nearest.empty() || !wouldFit(nearest, member.value)) continue;
+        const JsonMember*& place = members_[indexOf(nearest)];
+        if (!place) place = &member;
+      }
+    }
+
     static bool wouldFit(const std::string& key, const JsonValue& value) {
       const bool wantsObject = key == "passes" || key == "outputs" || key == "inputs" || key == "params";
       return wantsObject == value.isObject();
     }
-    std::map<std::string, const JsonMember*> members_;
+
+    std::span<const std::string_view> known_;
+    std::array<const JsonMember*, kMost + 1> members_{};  ///< by index into `known_`; one more, for what isn't known
   };
 
-  static std::string join(const std::string& path, const std::string& key) {
-    return path.empty() ? key : path + "." + key;
+  void add(int line, const Path& path, std::string message, std::string nearest = "") {
+    diagnostics_.push_back({d_.file, line, path.text(), std::move(message), std::move(nearest)});
   }
 
-  void add(int line, std::string path, std::string message, std::string nearest = "") {
-    diagnostics_.push_back({d_.file, line, std::move(path), std::move(message), std::move(nearest)});
-  }
-
-  bool expectText(const JsonValue& value, const std::string& path) {
+  bool expectText(const JsonValue& value, const Path& path) {
     if (as<std::string>(value)) return true;
     add(value.line, path, fmt::format("expected a text, not {}", kind(value)));
     return false;
   }
 
-  bool expectObject(const JsonValue& value, const std::string& path) {
+  bool expectObject(const JsonValue& value, const Path& path) {
     if (value.isObject()) return true;
     add(value.line, path, fmt::format("expected an object, not {}", kind(value)));
     return false;
@@ -107,54 +138,64 @@ class Parser {
     const int64_t* number = as<int64_t>(value);
     if (number && *number == kVersion) return;
     const std::string found = value.kind == JsonValue::Kind::Scalar ? toText(value.scalar) : kind(value);
-    add(value.line, "version", fmt::format("expected {}, the only version there is, not {}", kVersion, found));
+    add(value.line, {nullptr, "version"}, fmt::format("expected {}, the only version there is, not {}", kVersion, found));
   }
 
-  bool passes(const JsonValue& value) {
-    if (!expectObject(value, "passes")) return false;
-    if (value.members.empty()) add(value.line, "passes", "there is no pass; expected at least one");
+  bool passes(const JsonValue& value, const Path& path) {
+    if (!expectObject(value, path)) return false;
+    if (value.members.empty()) add(value.line, path, "there is no pass; expected at least one");
+    d_.passes.reserve(value.members.size());
     for (const JsonMember& member : value.members) {
-      const std::string path = "passes." + member.key;
+      const Path at{&path, member.key};
       if (!isName(member.key))
-        add(member.line, path, fmt::format("'{}' can't be a pass's name; expected {}", member.key, kNameRule));
-      PassEntry entry;
+        add(member.line, at, fmt::format("'{}' can't be a pass's name; expected {}", member.key, kNameRule));
+      PassEntry& entry = d_.passes.emplace_back();
       entry.name = member.key;
       entry.line = entry.typeLine = member.line;
-      if (expectObject(member.value, path)) pass(member.value, path, entry);
-      d_.passes.push_back(std::move(entry));
+      if (expectObject(member.value, at)) pass(member.value, at, entry);
     }
     return !value.members.empty();
   }
 
-  void pass(const JsonValue& object, const std::string& path, PassEntry& entry) {
-    const Keys keys(*this, object, path, {"type", "enabled", "inputs", "params"});
-    for (const auto& [key, member] : keys.members()) {
-      const JsonValue& value = member->value;
-      const std::string at = path + "." + key;
-      if (key == "type") {
-        entry.typeLine = value.line;
-        if (!expectText(value, at)) continue;
-        entry.type = *as<std::string>(value);
-        if (entry.type.empty()) add(value.line, at, "expected a type, as \"plugin.Pass\", not an empty text");
-      } else if (key == "enabled") {
-        entry.enabledLine = value.line;
-        if (const bool* on = as<bool>(value))
-          entry.enabled = *on;
-        else
-          add(value.line, at, fmt::format("expected true or false, not {}", kind(value)));
-      } else if (key == "inputs") {
-        entry.inputsBroken = !expectObject(value, at);
-        for (const JsonMember& input : value.members) entry.inputs.push_back(reference<InputEntry>(input, at));
-      } else if (key == "params" && expectObject(value, at)) {
-        for (const JsonMember& param : value.members) parameter(param, at, entry);
-      }
+  void pass(const JsonValue& object, const Path& path, PassEntry& entry) {
+    static constexpr std::string_view kKeys[] = {"type", "enabled", "inputs", "params"};
+    const Keys keys(*this, object, path, kKeys);
+    if (const JsonMember* member = keys.find("enabled")) enabled(member->value, {&path, "enabled"}, entry);
+    if (const JsonMember* member = keys.find("inputs")) {
+      const Path at{&path, "inputs"};
+      entry.inputsBroken = !expectObject(member->value, at);
+      entry.inputs.reserve(member->value.members.size());
+      for (const JsonMember& input : member->value.members) entry.inputs.push_back(reference<InputEntry>(input, at));
     }
-    if (!keys.has("type")) add(entry.line, path + ".type", "is missing; expected a type, as \"plugin.Pass\"");
+    if (const JsonMember* member = keys.find("params")) {
+      const Path at{&path, "params"};
+      if (expectObject(member->value, at))
+        for (const JsonMember& param : member->value.members) parameter(param, {&at, param.key}, entry);
+    }
+    if (const JsonMember* member = keys.find("type"))
+      type(member->value, {&path, "type"}, entry);
+    else
+      add(entry.line, {&path, "type"}, "is missing; expected a type, as \"plugin.Pass\"");
   }
 
-  void parameter(const JsonMember& member, const std::string& path, PassEntry& entry) {
+  void enabled(const JsonValue& value, const Path& path, PassEntry& entry) {
+    entry.enabledLine = value.line;
+    if (const bool* on = as<bool>(value))
+      entry.enabled = *on;
+    else
+      add(value.line, path, fmt::format("expected true or false, not {}", kind(value)));
+  }
+
+  void type(const JsonValue& value, const Path& path, PassEntry& entry) {
+    entry.typeLine = value.line;
+    if (!expectText(value, path)) return;
+    entry.type = *as<std::string>(value);
+    if (entry.type.empty()) add(value.line, path, "expected a type, as \"plugin.Pass\", not an empty text");
+  }
+
+  void parameter(const JsonMember& member, const Path& path, PassEntry& entry) {
     if (member.value.kind != JsonValue::Kind::Scalar) {
-      add(member.value.line, path + "." + member.key,
+      add(member.value.line, path,
           fmt::format("expected a number, a text, true or false, not {}", kind(member.value)));
       return;
     }
@@ -174,8 +215,8 @@ class Parser {
 
   /// A malformed reference leaves `source` empty, which later checks take as "said already".
   template <typename Entry>
-  Entry reference(const JsonMember& member, const std::string& path) {
-    const std::string at = path + "." + member.key;
+  Entry reference(const JsonMember& member, const Path& path) {
+    const Path at{&path, member.key};
     Entry entry;
     setName(entry, member);
     entry.line = member.value.line;
@@ -195,14 +236,14 @@ class Parser {
     return text.find('@') != std::string::npos && parseReference(withSuffix) ? withSuffix : "";
   }
 
-  void outputs(const JsonValue& value) {
-    if (!expectObject(value, "outputs")) return;
-    if (value.members.empty()) add(value.line, "outputs", "there is no output; expected at least one");
+  void outputs(const JsonValue& value, const Path& path) {
+    if (!expectObject(value, path)) return;
+    if (value.members.empty()) add(value.line, path, "there is no output; expected at least one");
     for (const JsonMember& member : value.members) {
       if (!isName(member.key))
-        add(member.line, "outputs." + member.key,
+        add(member.line, {&path, member.key},
             fmt::format("'{}' can't be an output's name; expected {}", member.key, kNameRule));
-      d_.outputs.push_back(reference<OutputEntry>(member, "outputs"));
+      d_.outputs.push_back(reference<OutputEntry>(member, path));
     }
   }
 

@@ -13,55 +13,134 @@ class Resolver {
   Resolver(Checked& checked, Findings& findings) : checked_(checked), findings_(findings) {}
 
   void resolve() {
+    ways_.resize(checked_.nodes.size());
+    for (uint32_t n = 0; n < ways_.size(); ++n)
+      if (const Node& node = checked_.nodes[n]; !node.enabled() && node.type) ways_[n].resize(node.type->outputs.size());
     for (Node& node : checked_.nodes) {
       if (!node.enabled()) continue;  // what a disabled pass reads is read by nobody
       for (Link& link : node.links)
-        link.resolved =
-            follow(link.written, link.entry->line, fmt::format("passes.{}.inputs.{}", node.name(), link.entry->port));
+        link.resolved = follow(link.written, link.entry->line, [&] {
+          return fmt::format("passes.{}.inputs.{}", node.name(), link.entry->port);
+        });
     }
     for (OutputLink& output : checked_.outputs)
-      output.resolved = follow(output.written, output.entry->line, "outputs." + output.entry->name);
+      output.resolved =
+          follow(output.written, output.entry->line, [&] { return "outputs." + output.entry->name; });
   }
 
  private:
+  /// Where a way goes from an output of a disabled pass to a last frame's value.
+  struct Meeting {
+    uint32_t node = kNone;
+    Source next;
+  };
+
+  /// Where an output of a disabled pass leads. Kept for each, so that many readers of a long chain walk it once.
+  struct Way {
+    enum class Kind : uint8_t { Unknown, OnPath, Ends, Stops, Loops };
+    Kind kind = Kind::Unknown;
+    Source end;             ///< Ends: of an enabled pass; Stops: where it can't go on; Loops: the first on the loop
+    Meeting first, second;  ///< of the ways a frame back, at most two
+  };
+
+  struct Step {
+    Source at, next;
+  };
+
+  bool enabled(const Source& source) const { return checked_.nodes[source.node].enabled(); }
+  Way& wayOf(const Source& source) { return ways_[source.node][source.output]; }
+
   /// `line` and `path` are the reader's. A source without a node comes back when something was wrong, now or before.
-  Source follow(Source source, int line, const std::string& path) {
-    const Source written = source;
-    std::vector<uint32_t> passed;
-    while (source.node != kNone && !checked_.nodes[source.node].enabled()) {
-      if (std::find(passed.begin(), passed.end(), source.node) != passed.end()) return reportLoop(passed, source.node);
-      passed.push_back(source.node);
-      const Source next = stepThrough(source);
-      if (next.node == kNone) return {};
-      if (source.previous && next.previous) {
-        findings_.add(line, path,
-                      fmt::format("'{}' leads through the disabled pass '{}' to '{}', which makes it two frames old; "
-                                  "expected at most one @previous on the way",
-                                  checked_.text(written), checked_.nodes[source.node].name(), checked_.text(next)));
-        return {};
-      }
-      const bool previous = source.previous || next.previous;
-      source = next;
-      source.previous = previous;
+  template <typename PathOf>
+  Source follow(const Source& written, int line, const PathOf& path) {
+    if (written.node == kNone || enabled(written)) return written;
+    if (!written.known()) return {};
+    const Way& way = walk(written);
+    const Meeting& meeting = written.previous ? way.first : way.second;
+    if (meeting.node != kNone) {
+      findings_.add(line, path(),
+                    fmt::format("'{}' leads through the disabled pass '{}' to '{}', which makes it two frames old; "
+                                "expected at most one @previous on the way",
+                                checked_.text(written), checked_.nodes[meeting.node].name(),
+                                checked_.text(meeting.next)));
+      return {};
     }
-    return source;
+    if (way.kind == Way::Kind::Stops) step(way.end, true);
+    if (way.kind == Way::Kind::Loops) reportLoop(way.end);
+    if (way.kind != Way::Kind::Ends) return {};
+    Source end = way.end;
+    end.previous = written.previous || way.first.node != kNone;
+    return end;
   }
 
-  /// From an output of a disabled pass to what stands for it.
-  Source stepThrough(const Source& source) {
-    const Node& node = checked_.nodes[source.node];
+  const Way& walk(const Source& from) {
+    std::vector<Step> path;
+    Way way;
+    for (Source at = from; way.kind == Way::Kind::Unknown;) {
+      if (enabled(at)) {
+        way = {Way::Kind::Ends, at, {}, {}};
+      } else if (!at.known()) {
+        way = {Way::Kind::Stops, at, {}, {}};
+      } else if (wayOf(at).kind == Way::Kind::OnPath) {
+        way = closeLoop(path, at);
+      } else if (wayOf(at).kind != Way::Kind::Unknown) {
+        way = wayOf(at);
+      } else {
+        wayOf(at).kind = Way::Kind::OnPath;
+        path.push_back({at, step(at, false)});
+        if (path.back().next.node == kNone) way = {Way::Kind::Stops, at, {}, {}};
+        at = path.back().next;
+      }
+    }
+    for (; !path.empty(); path.pop_back()) {
+      goBack(way, path.back());
+      wayOf(path.back().at) = way;
+    }
+    return wayOf(from);
+  }
+
+  /// The way from one step earlier.
+  static void goBack(Way& way, const Step& step) {
+    if (step.next.node == kNone || !step.next.previous) return;
+    way.second = way.first;
+    way.first = {step.at.node, step.next};
+  }
+
+  /// Takes the steps of a loop off the path; the way of its first one comes back.
+  Way closeLoop(std::vector<Step>& path, const Source& entry) {
+    const auto isEntry = [&](const Step& s) { return s.at.node == entry.node && s.at.output == entry.output; };
+    const auto begin = std::find_if(path.begin(), path.end(), isEntry);
+    const auto turns = std::count_if(begin, path.end(), [](const Step& s) { return s.next.previous; });
+    Way way{Way::Kind::Loops, entry, {}, {}};
+    for (const bool store : {false, true})  // the first round finds what comes after the loop's end
+      for (auto s = path.end(); s != begin;) {
+        goBack(way, *--s);
+        if (turns < 2) way.second = {};  // once round the loop, and no further
+        way.end = s->at;
+        if (store) wayOf(s->at) = way;
+      }
+    path.erase(begin, path.end());
+    return way;
+  }
+
+  /// From an output of a disabled pass to what stands for it; nothing when nothing can, and with `say` the reason why.
+  Source step(const Source& source, bool say) {
     if (!source.known()) return {};
+    const Node& node = checked_.nodes[source.node];
     const PortDescription& output = node.type->outputs[source.output];
     if (output.passesThrough.empty())
-      return refuse(source, fmt::format("its output '{}' is read and passes nothing through", output.name));
+      return !say ? Source{}
+                  : refuse(source, fmt::format("its output '{}' is read and passes nothing through", output.name));
     const auto input = std::find_if(node.type->inputs.begin(), node.type->inputs.end(),
                                     [&](const PortDescription& port) { return port.name == output.passesThrough; });
     if (!compatible(output.type, input->type))
-      return refuse(source, fmt::format("its output '{}' is {}, its input '{}', which would stand for it, is {}",
-                                        output.name, describe(output.type), input->name, describe(input->type)));
+      return !say ? Source{}
+                  : refuse(source,
+                           fmt::format("its output '{}' is {}, its input '{}', which would stand for it, is {}",
+                                       output.name, describe(output.type), input->name, describe(input->type)));
     const Link* link = node.linkOf(static_cast<uint32_t>(input - node.type->inputs.begin()));
     if (link) return link->written;
-    if (input->required) return {};  // that it is open has been said
+    if (input->required || !say) return {};  // that a required one is open has been said
     return refuse(source, fmt::format("its input '{}', which would stand for its output '{}', is not connected",
                                       input->name, output.name));
   }
@@ -75,21 +154,21 @@ class Resolver {
     return {};
   }
 
-  Source reportLoop(const std::vector<uint32_t>& passed, uint32_t again) {
-    const std::vector<uint32_t> loop(std::find(passed.begin(), passed.end(), again), passed.end());
-    if (!loops_.insert({loop.begin(), loop.end()}).second) return {};
+  /// Once for all of its readers; `entry` is the first of its outputs that a reader comes to.
+  void reportLoop(const Source& entry) {
     std::string text;
-    for (uint32_t node : loop) text += checked_.nodes[node].name() + " → ";
-    const PassEntry& entry = *checked_.nodes[again].entry;
-    findings_.add(entry.line, "passes." + entry.name,
-                  fmt::format("disabled passes stand for each other in a cycle: {}{}", text, entry.name));
-    return {};
+    for (Source at = entry; inLoops_.insert({at.node, at.output}).second; at = step(at, false))
+      text += checked_.nodes[at.node].name() + " → ";
+    if (text.empty()) return;
+    const PassEntry& first = *checked_.nodes[entry.node].entry;
+    findings_.add(first.line, "passes." + first.name,
+                  fmt::format("disabled passes stand for each other in a cycle: {}{}", text, first.name));
   }
 
   Checked& checked_;
   Findings& findings_;
-  std::set<std::pair<uint32_t, uint32_t>> refused_;
-  std::set<std::set<uint32_t>> loops_;
+  std::vector<std::vector<Way>> ways_;  ///< by node and output; empty for enabled passes
+  std::set<std::pair<uint32_t, uint32_t>> refused_, inLoops_;
 };
 
 }  // namespace

@@ -16,8 +16,45 @@ Json object(Json properties) {
   return {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
 }
 
+/// A number as people write it: 0.1 and not 0.10000000149.
+std::string numberText(float value) {
+  return fmt::format("{}", value);
+}
+
+/// "Lights drawn for each pixel. Integer from 1 to 1024, default 32, in pixels."
+std::string describe(const ParamDescription& p) {
+  std::string text = p.doc.empty() ? "" : p.doc + ". ";
+  switch (p.type) {
+    case ParamType::Bool:
+      text += "True or false";
+      break;
+    case ParamType::Int:
+      text += "Integer";
+      break;
+    case ParamType::Float:
+      text += "Number";
+      break;
+    case ParamType::Enum:
+      text += fmt::format("One of {}", fmt::join(p.choices, ", "));
+      break;
+    case ParamType::String:
+      text += "Text";
+      break;
+  }
+  if (p.low && p.high)
+    text += fmt::format(" from {} to {}", *p.low, *p.high);
+  else if (p.low || p.high)
+    text += fmt::format(" of at {} {}", p.low ? "least" : "most", p.low ? *p.low : *p.high);
+  if (const auto* real = std::get_if<float>(&p.defaultValue))
+    text += ", default " + numberText(*real);
+  else if (const std::string value = weir::toText(p.defaultValue); !value.empty())
+    text += ", default " + value;
+  if (!p.unit.empty()) text += ", in " + p.unit;
+  return text + ".";
+}
+
 Json param(const ParamDescription& p) {
-  Json json;
+  Json json = {{"description", describe(p)}};
   switch (p.type) {
     case ParamType::Bool:
       json["type"] = "boolean";
@@ -38,61 +75,108 @@ Json param(const ParamDescription& p) {
   if (p.low) json["minimum"] = *p.low;
   if (p.high) json["maximum"] = *p.high;
   if (const auto* real = std::get_if<float>(&p.defaultValue))
-    json["default"] = Json::parse(fmt::format("{}", *real));
+    json["default"] = Json::parse(numberText(*real));
   else
     std::visit([&](const auto& value) { json["default"] = value; }, p.defaultValue);
-  const std::string doc = p.unit.empty() ? p.doc : fmt::format("{}{}[{}]", p.doc, p.doc.empty() ? "" : " ", p.unit);
-  if (!doc.empty()) json["description"] = doc;
   return json;
 }
 
+/// "Reservoir v1" or "image RGBA32F": the stride and hash of a layout say nothing to whoever writes a graph.
+std::string carries(const PortType& type) {
+  return type.kind == PortKind::Image ? weir::describe(type) : fmt::format("{} v{}", type.layout.name, type.layout.version);
+}
+
+/// "Last frame's samples. Required; Reservoir v1, any number a pixel, at 1/2 of the frame's size."
+std::string describe(const PortDescription& port) {
+  std::string text = port.doc.empty() ? "" : port.doc + ". ";
+  text += fmt::format("{}; {}", port.required ? "Required" : "May stay unconnected", carries(port.type));
+  const PortType& type = port.type;
+  if (type.fixedCount != 0)
+    text += fmt::format(" with {} elements", type.fixedCount);
+  else if (type.anyPerPixel)
+    text += ", any number a pixel";
+  else if (type.perPixel != 1)
+    text += fmt::format(", {} a pixel", type.perPixel);
+  if (type.scaleNumerator != type.scaleDenominator)
+    text += fmt::format(", at {}/{} of the frame's size", type.scaleNumerator, type.scaleDenominator);
+  return text + ".";
+}
+
+/// "Merges … Outputs: surface (PackedSurface …), color (image RGBA32F)."
+std::string describe(const PassDescription& pass) {
+  std::string text = pass.text.empty() ? pass.type : pass.text;
+  text += ". Outputs: ";
+  if (pass.outputs.empty()) text += "none";
+  for (const PortDescription& port : pass.outputs) {
+    if (&port != &pass.outputs.front()) text += ", ";
+    text += fmt::format("{} ({})", port.name, carries(port.type));
+  }
+  return text + ".";
+}
+
+/// What a pass of that type may have beside its type: inputs and parameters.
 Json pass(const PassDescription& description) {
-  Json inputs = Json::object(), params = Json::object(), required = Json::array({"type"});
-  Json requiredInputs = Json::array();
+  Json inputs = Json::object(), params = Json::object(), requiredInputs = Json::array();
   for (const PortDescription& port : description.inputs) {
-    inputs[port.name] = {{"$ref", "#/definitions/reference"}, {"description", describe(port.type)}};
-    if (!port.doc.empty()) inputs[port.name]["description"] = port.doc + " (" + describe(port.type) + ")";
+    // Beside a "$ref" draft-07 ignores everything, a description too; so it stands inside of "allOf".
+    inputs[port.name] = {{"description", describe(port)}, {"allOf", {{{"$ref", "#/definitions/reference"}}}}};
     if (port.required) requiredInputs.push_back(port.name);
   }
   for (const ParamDescription& p : description.params) params[p.name] = param(p);
   Json inputsObject = object(std::move(inputs));
-  if (!requiredInputs.empty()) {
-    inputsObject["required"] = std::move(requiredInputs);
-    required.push_back("inputs");
-  }
-  Json json = object({{"type", {{"const", description.type}}},
-                      {"enabled", {{"type", "boolean"}, {"default", true}}},
-                      {"inputs", std::move(inputsObject)},
-                      {"params", object(std::move(params))}});
-  json["required"] = std::move(required);
-  if (!description.text.empty()) json["description"] = description.text;
+  const bool needsInputs = !requiredInputs.empty();
+  if (needsInputs) inputsObject["required"] = std::move(requiredInputs);
+  Json json = {{"description", describe(description)},
+               {"properties", {{"inputs", std::move(inputsObject)}, {"params", object(std::move(params))}}}};
+  if (needsInputs) json["required"] = {"inputs"};
   return json;
 }
 
 }  // namespace
 
 std::string schemaJson(const PassCatalog& catalog) {
-  Json definitions = {{"reference", {{"type", "string"}, {"pattern", kReference}}}};
-  Json choices = Json::array();
+  Json definitions = {{"reference",
+                       {{"description", "What is read: \"pass.port\", or \"pass.port@previous\" for its last frame."},
+                        {"type", "string"},
+                        {"pattern", kReference}}}};
+  // A choice by "type" and not "oneOf": where something is wrong inside of a pass, an editor then says what, instead of
+  // that it is none of all the passes there are.
+  Json types = Json::array(), choices = Json::array();
   for (const std::string& type : catalog.types()) {
     const PassDescription* description = catalog.find(type);
     if (!description) continue;
     definitions[type] = pass(*description);
-    choices.push_back({{"$ref", "#/definitions/" + type}});
+    types.push_back(type);
+    choices.push_back({{"if", {{"properties", {{"type", {{"const", type}}}}}, {"required", {"type"}}}},
+                       {"then", {{"$ref", "#/definitions/" + type}}}});
   }
-  const Json anyPass = choices.empty() ? Json{{"type", "object"}} : Json{{"oneOf", std::move(choices)}};
+  Json anyPass = object({{"type", {{"description", "The pass, as \"plugin.Pass\"."}, {"type", "string"}}},
+                         {"enabled",
+                          {{"description", "Whether it runs. False: each output is what the pass passes through."},
+                           {"type", "boolean"},
+                           {"default", true}}},
+                         {"inputs", {{"description", "What each input reads."}, {"type", "object"}}},
+                         {"params", {{"description", "Parameters that differ from their defaults."}, {"type", "object"}}}});
+  anyPass["required"] = {"type"};
+  if (!types.empty()) {
+    anyPass["properties"]["type"]["enum"] = std::move(types);
+    anyPass["allOf"] = std::move(choices);
+  }
+  definitions["pass"] = std::move(anyPass);
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Weir graph"}};
   schema.update(object({{"$schema", {{"type", "string"}}},
-                        {"version", {{"const", 1}}},
-                        {"name", {{"type", "string"}}},
+                        {"version", {{"description", "Of the format."}, {"const", 1}}},
+                        {"name", {{"description", "Of the graph; otherwise that of its file."}, {"type", "string"}}},
                         {"description", {{"type", "string"}}},
                         {"passes",
-                         {{"type", "object"},
+                         {{"description", "Passes by name. Order comes from what they read of each other."},
+                          {"type", "object"},
                           {"minProperties", 1},
                           {"propertyNames", {{"pattern", kName}}},
-                          {"additionalProperties", anyPass}}},
+                          {"additionalProperties", {{"$ref", "#/definitions/pass"}}}}},
                         {"outputs",
-                         {{"type", "object"},
+                         {{"description", "What the graph gives, by name."},
+                          {"type", "object"},
                           {"minProperties", 1},
                           {"propertyNames", {{"pattern", kName}}},
                           {"additionalProperties", {{"$ref", "#/definitions/reference"}}}}}}));
