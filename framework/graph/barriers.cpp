@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 namespace weir::graph {
 namespace {
@@ -31,8 +32,12 @@ class Hazards {
     for (uint32_t p = 0; p < graph.passes.size(); ++p)
       for (const Binding& input : graph.passes[p].inputs)
         if (input.resource != kNone) addOnce((input.previous ? later_ : readers_)[input.resource], p);
+    sharing_.resize(graph.blocks.size());
     for (uint32_t r = 0; r < graph.resources.size(); ++r)
-      if (graph.resources[r].shares) sharing_.push_back(r);
+      if (graph.resources[r].shares) sharing_[graph.resources[r].block].push_back(r);
+    for (std::vector<uint32_t>& block : sharing_)
+      std::sort(block.begin(), block.end(),
+                [&](uint32_t a, uint32_t b) { return graph.resources[a].offset < graph.resources[b].offset; });
   }
 
   void list(uint32_t pass) {
@@ -57,14 +62,59 @@ class Hazards {
   void beforeWriting(CompiledPass& p, uint32_t resource) {
     const Resource& r = graph_.resources[resource];
     if (r.external) return;  // the host comes before and after
+    if (r.shares) return takeOver(p, resource);
     usesOf(p, resource, resource, r.history ? 2 : 1);
     for (const uint32_t reader : later_[resource])
       p.dependencies.push_back({Hazard::WriteAfterRead, resource, resource, reader, 1});
-    if (!r.shares) return;
-    for (const uint32_t other : sharing_) {
+  }
+
+  /// Who had some of the memory, last first, until every byte is accounted for: those before them are over too, as the
+  /// later ones waited for them.
+  void takeOver(CompiledPass& p, uint32_t resource) {
+    const Resource& r = graph_.resources[resource];
+    struct Owner {
+      uint32_t resource, framesBack;
+      int64_t lastUse;  ///< in passes since this frame began
+    };
+    std::vector<Owner> owners;
+    for (const uint32_t other : sharing_[r.block]) {
       const Resource& o = graph_.resources[other];
-      if (other != resource && shareMemory(r, o)) usesOf(p, resource, other, o.lastUse < r.firstUse ? 0 : 1);
+      if (o.offset >= r.offset + r.memoryBytes) break;
+      if (!shareMemory(r, o)) continue;
+      const bool thisFrame = other != resource && o.lastUse < r.firstUse;
+      const auto passes = static_cast<int64_t>(graph_.passes.size());
+      owners.push_back({other, thisFrame ? 0u : 1u, thisFrame ? int64_t{o.lastUse} : int64_t{o.lastUse} - passes});
     }
+    std::sort(owners.begin(), owners.end(), [](const Owner& a, const Owner& b) {
+      return std::tie(b.lastUse, a.resource) < std::tie(a.lastUse, b.resource);
+    });
+    std::vector<Range> open = {{r.offset, r.offset + r.memoryBytes}};
+    for (const Owner& owner : owners) {
+      const Resource& o = graph_.resources[owner.resource];
+      if (take(open, {o.offset, o.offset + o.memoryBytes})) usesOf(p, resource, owner.resource, owner.framesBack);
+      if (open.empty()) return;
+    }
+  }
+
+  struct Range {
+    uint64_t from, to;
+  };
+  /// Takes `range` out of `open`; whether any of it was there.
+  static bool take(std::vector<Range>& open, const Range& range) {
+    std::vector<Range> left;
+    bool any = false;
+    for (const Range& part : open) {
+      const Range both{std::max(part.from, range.from), std::min(part.to, range.to)};
+      if (both.from >= both.to) {
+        left.push_back(part);
+        continue;
+      }
+      any = true;
+      if (part.from < both.from) left.push_back({part.from, both.from});
+      if (both.to < part.to) left.push_back({both.to, part.to});
+    }
+    open = std::move(left);
+    return any;
   }
 
   /// All uses of `had` in that frame must be over before `wanted` is written.
@@ -78,7 +128,7 @@ class Hazards {
 
   CompiledGraph& graph_;
   std::vector<std::vector<uint32_t>> readers_, later_;  ///< by resource: passes that read it, now and as previous
-  std::vector<uint32_t> sharing_;
+  std::vector<std::vector<uint32_t>> sharing_;          ///< by block, by offset
 };
 
 /// An image that takes over memory has a barrier of its own, which covers all that it depends on.

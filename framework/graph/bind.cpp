@@ -36,8 +36,7 @@ class Binder {
     for (Node& node : checked_.nodes) bindInputs(node);
     for (const OutputEntry& entry : description.outputs) {
       OutputLink link{&entry, {}, {}};
-      if (entry.source)
-        link.written = find(*entry.source, entry.line, [&] { return "outputs." + entry.name; });
+      if (entry.source) link.written = find(*entry.source, entry.line, [&] { return "outputs." + entry.name; });
       checked_.outputs.push_back(link);
     }
     return std::move(checked_);

@@ -20,52 +20,60 @@ uint64_t alignedUp(uint64_t value, uint64_t alignment) {
   return (value + alignment - 1) / alignment * alignment;
 }
 
-bool livesWith(const Resource& a, const Resource& b) {
-  return a.firstUse <= b.lastUse && b.firstUse <= a.lastUse;
-}
-
 class Placer {
  public:
   Placer(CompiledGraph& graph, const std::vector<MemoryNeed>& needs, uint64_t largest)
       : graph_(graph), needs_(needs), largest_(largest) {}
 
   void place(uint32_t index) {
-    Resource& r = graph_.resources[index];
     for (uint32_t b = 0; b < graph_.blocks.size(); ++b)
       if ((graph_.blocks[b].kinds & needs_[index].kinds) != 0 && placeIn(b, index)) return;
-    graph_.blocks.push_back({needs_[index].bytes, needs_[index].alignment, needs_[index].kinds});
-    placed_.emplace_back().push_back(index);
-    r.block = static_cast<uint32_t>(graph_.blocks.size() - 1);
-    r.offset = 0;
+    graph_.blocks.push_back({0, 1, 0xffffffffu});
+    placed_.emplace_back();
+    placeIn(static_cast<uint32_t>(graph_.blocks.size() - 1), index);
+  }
+
+  /// Says of each resource whether others use some of its memory.
+  void markShared() {
+    for (const std::vector<Place>& block : placed_)
+      for (size_t i = 0; i < block.size(); ++i)
+        for (size_t k = i + 1; k < block.size() && block[k].from < block[i].to; ++k)
+          graph_.resources[block[i].resource].shares = graph_.resources[block[k].resource].shares = true;
   }
 
  private:
+  /// All that looking for a gap needs, side by side in memory.
+  struct Place {
+    uint64_t from, to;
+    uint32_t firstUse, lastUse, resource;
+  };
+
   bool placeIn(uint32_t b, uint32_t index) {
     Resource& r = graph_.resources[index];
     const MemoryNeed& need = needs_[index];
+    std::vector<Place>& places = placed_[b];
     uint64_t at = 0;
-    for (const uint32_t other : placed_[b]) {  // by offset, so that the first gap is the lowest
-      const Resource& o = graph_.resources[other];
-      if (!livesWith(o, r)) continue;
-      if (at + need.bytes <= o.offset) break;
-      at = std::max(at, alignedUp(o.offset + needs_[other].bytes, need.alignment));
+    for (const Place& other : places) {  // by offset, so that the first gap is the lowest
+      if (other.firstUse > r.lastUse || r.firstUse > other.lastUse) continue;
+      if (at + need.bytes <= other.from) break;
+      at = std::max(at, alignedUp(other.to, need.alignment));
     }
     MemoryBlock& block = graph_.blocks[b];
-    if (at + need.bytes > std::max(block.bytes, largest_)) return false;
+    if (!places.empty() && at + need.bytes > std::max(block.bytes, largest_)) return false;
     block.bytes = std::max(block.bytes, at + need.bytes);
     block.alignment = std::max(block.alignment, need.alignment);
     block.kinds &= need.kinds;
     r.block = b;
     r.offset = at;
-    const auto byOffset = [this](uint64_t offset, uint32_t other) { return offset < graph_.resources[other].offset; };
-    placed_[b].insert(std::upper_bound(placed_[b].begin(), placed_[b].end(), at, byOffset), index);
+    const auto after = std::find_if(places.begin(), places.end(), [at](const Place& other) { return other.from > at; });
+    places.insert(after, {at, at + need.bytes, r.firstUse, r.lastUse, index});
     return true;
   }
 
   CompiledGraph& graph_;
   const std::vector<MemoryNeed>& needs_;
   uint64_t largest_;
-  std::vector<std::vector<uint32_t>> placed_;  ///< by block, ascending offsets
+  std::vector<std::vector<Place>> placed_;  ///< by block, ascending offsets
 };
 
 }  // namespace
@@ -92,11 +100,7 @@ void planMemory(CompiledGraph& graph, const std::vector<MemoryNeed>& needs, bool
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return needs[a].bytes > needs[b].bytes; });
   Placer placer(graph, needs, largest);
   for (const uint32_t r : order) placer.place(r);
-  for (size_t i = 0; i < order.size(); ++i)
-    for (size_t k = 0; k < i; ++k) {
-      Resource &a = graph.resources[order[i]], &b = graph.resources[order[k]];
-      if (shareMemory(a, b)) a.shares = b.shares = true;
-    }
+  placer.markShared();
 }
 
 uint64_t CompiledGraph::mostAlive() const {

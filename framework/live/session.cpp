@@ -38,7 +38,8 @@ graph::CompiledGraph Session::compile(const graph::Overrides& overrides, const g
 /// Of the plugins that the running graph uses.
 std::vector<std::string> Session::plugins() const {
   std::set<std::string> names;
-  for (const graph::CompiledPass& pass : executor_->graph().passes) names.insert(pass.type.substr(0, pass.type.find('.')));
+  for (const graph::CompiledPass& pass : executor_->graph().passes)
+    names.insert(pass.type.substr(0, pass.type.find('.')));
   return {names.begin(), names.end()};
 }
 
@@ -73,7 +74,8 @@ std::vector<Event> Session::poll() {
     const auto files = registry_.pluginFiles(plugin);
     Event event{Event::Kind::Plugin, takeOut([&](const std::string& file) {
                   return std::find(files.begin(), files.end(), file) != files.end();
-                }), ""};
+                }),
+                ""};
     if (event.files.empty()) continue;
     attempt(event, [&] {
       registry_.reload(plugin);

@@ -10,8 +10,8 @@ namespace weir::live {
 
 class WatchedFiles {
  public:
-  /// Watches these and no others. Those that were watched before keep what was seen of them, so that a change in between
-  /// is not lost.
+  /// Watches these and no others. Those that were watched before keep what was seen of them, so that a change in
+  /// between is not lost.
   void watch(const std::vector<std::string>& files);
   /// What changed since the last call: written, replaced, removed or there again. Sorted.
   std::vector<std::string> changed();

@@ -67,16 +67,16 @@ class Extreme : public ::testing::Test {
 };
 
 TEST_F(Extreme, ALongChain) {
-  const Result r = fine(graphOf(kMany, "\"x\": \"p0.o\"", [](int i) { return link(i + 1 < kMany ? from(i + 1) : ""); }));
+  const Result r =
+      fine(graphOf(kMany, "\"x\": \"p0.o\"", [](int i) { return link(i + 1 < kMany ? from(i + 1) : ""); }));
   ASSERT_EQ(r.graph.passes.size(), size_t{kMany});
   EXPECT_EQ(r.graph.passes.front().name, fmt::format("p{}", kMany - 1));
   EXPECT_EQ(r.graph.passes.back().name, "p0");
 }
 
 TEST_F(Extreme, EverybodyReadsOne) {
-  const Result r = fine(graphOf(kMany, "\"x\": \"p1.o\"", [](int i) {
-    return link(i > 0 ? from(0) + ", " + from(0, "b", "p@previous") : "");
-  }));
+  const Result r = fine(graphOf(kMany, "\"x\": \"p1.o\"",
+                                [](int i) { return link(i > 0 ? from(0) + ", " + from(0, "b", "p@previous") : ""); }));
   EXPECT_EQ(r.graph.passes.size(), 2u);
   EXPECT_EQ(r.graph.skipped.size(), size_t{kMany - 2});
 }
@@ -94,7 +94,8 @@ TEST_F(Extreme, ALongChainOfDisabledPassesReadAllAlong) {
   const auto graph = [](const std::string& last) {
     return graphOf(kMany, fmt::format("\"x\": \"p{}.o\"", kMany - 1), [&](int i) {
       if (i == 0) return link(last);
-      return i % 2 == 0 ? link(from(i - 2), ", \"enabled\": false") : link(from(i - 1) + (i > 1 ? ", " + from(i - 2, "b") : ""));
+      return i % 2 == 0 ? link(from(i - 2), ", \"enabled\": false")
+                        : link(from(i - 1) + (i > 1 ? ", " + from(i - 2, "b") : ""));
     });
   };
   const Result r = fine(graph(""));
@@ -179,8 +180,8 @@ TEST_F(Extreme, LongTexts) {
   one("{\"version\": " + brackets, "64");
   // The longest that are taken: they are said, whole.
   const std::string key(kLongestKey, 'k');
-  const Result r = timed("{\"version\": 1, \"passes\": {\"" + key + "\": {\"type\": \"t.Link\"}}, \"outputs\": {\"x\": \"" +
-                         key.substr(1) + ".o\"}}");
+  const Result r = timed("{\"version\": 1, \"passes\": {\"" + key +
+                         "\": {\"type\": \"t.Link\"}}, \"outputs\": {\"x\": \"" + key.substr(1) + ".o\"}}");
   ASSERT_EQ(r.diagnostics.size(), 1u);
   EXPECT_EQ(r.diagnostics[0].nearest, key);
 }
@@ -188,14 +189,17 @@ TEST_F(Extreme, LongTexts) {
 TEST_F(Extreme, NumbersAtTheirEnds) {
   for (const char* number : {"1e308", "-1e308", "1e-400", "9223372036854775808", "-9223372036854775809", "2147483648",
                              "-0.0", "1.0000000000000000000000000000000000000000000001e3"}) {
-    const Result r =
-        timed(graphOf(1, "\"x\": \"p0.o\"", [&](int) { return link("", fmt::format(", \"params\": {{\"n\": {}}}", number)); }));
+    const Result r = timed(graphOf(1, "\"x\": \"p0.o\"",
+                                   [&](int) { return link("", fmt::format(", \"params\": {{\"n\": {}}}", number)); }));
     EXPECT_LE(r.diagnostics.size(), 1u) << number;
-    const Result set = timed(graphOf(1, "\"x\": \"p0.o\"", [](int) { return link(""); }), {{fmt::format("p0.n={}", number)}, {}, {}});
-    EXPECT_EQ(set.diagnostics.size(), r.diagnostics.size()) << number << ": the command line and the file differ\n" << set.text();
+    const Result set =
+        timed(graphOf(1, "\"x\": \"p0.o\"", [](int) { return link(""); }), {{fmt::format("p0.n={}", number)}, {}, {}});
+    EXPECT_EQ(set.diagnostics.size(), r.diagnostics.size()) << number << ": the command line and the file differ\n"
+                                                            << set.text();
   }
   for (const char* number : {"NaN", "nan", "Infinity", "-inf", "0x10", "1e", "--1", "1e999", "\xff\xfe", ""}) {
-    const Result r = timed(graphOf(1, "\"x\": \"p0.o\"", [](int) { return link(""); }), {{fmt::format("p0.n={}", number)}, {}, {}});
+    const Result r =
+        timed(graphOf(1, "\"x\": \"p0.o\"", [](int) { return link(""); }), {{fmt::format("p0.n={}", number)}, {}, {}});
     ASSERT_EQ(r.diagnostics.size(), 1u) << number;
     EXPECT_EQ(r.diagnostics[0].file, "--set");
   }

@@ -1,5 +1,5 @@
-// Files are edited while a graph runs: the next frame shows it, the scene stays loaded, history goes on where it can, and
-// a broken edit changes nothing but is told.
+// Files are edited while a graph runs: the next frame shows it, the scene stays loaded, history goes on where it can,
+// and a broken edit changes nothing but is told.
 #include <weir/live/session.h>
 
 #include <chrono>
@@ -61,8 +61,10 @@ class Live : public ::testing::Test {
     fs::rename(temporary, folder_.path() + "/" + name);
   }
   void writeGraph(int step, const std::string& more = "") {
-    write("graph.json", R"({"version": 1, "passes": {"c": {"type": "own.Count", "inputs": {"before": "c.after@previous"},
-      "params": {"step": )" + std::to_string(step) + "}}" + more + R"(}, "outputs": {"o": "c.after"}})");
+    write("graph.json",
+          R"({"version": 1, "passes": {"c": {"type": "own.Count", "inputs": {"before": "c.after@previous"},
+      "params": {"step": )" +
+              std::to_string(step) + "}}" + more + R"(}, "outputs": {"o": "c.after"}})");
   }
   uint32_t frame(const std::string& resource = "c.after") {
     session_->executor().frame(input_);
@@ -138,7 +140,8 @@ TEST_F(Live, AnEditedGraphIsTakenAndHistoryGoesOnWherePortsAreUnchanged) {
 
 TEST_F(Live, ABrokenGraphIsToldWithItsLinesAndTheOldOneGoesOn) {
   frame();
-  write("graph.json", "{\n\"version\": 1,\n\"passes\": {\"c\": {\"type\": \"own.Cuont\"}},\n\"outputs\": {\"o\": \"c.aftre\"}}");
+  write("graph.json",
+        "{\n\"version\": 1,\n\"passes\": {\"c\": {\"type\": \"own.Cuont\"}},\n\"outputs\": {\"o\": \"c.aftre\"}}");
   const std::string error = only(live::Event::Kind::Graph).error;
   EXPECT_NE(error.find("graph.json:3"), std::string::npos) << error;
   EXPECT_NE(error.find("own.Count"), std::string::npos) << error;
@@ -172,7 +175,8 @@ class LivePlugin : public ::testing::Test {
  protected:
   void SetUp() override {
     manifest(1);
-    folder_.write("graph.json", R"({"version": 1, "passes": {"p": {"type": "live.Paint"}}, "outputs": {"o": "p.word"}})");
+    folder_.write("graph.json",
+                  R"({"version": 1, "passes": {"p": {"type": "live.Paint"}}, "outputs": {"o": "p.word"}})");
     registry_ = std::make_unique<Registry>(std::vector<fs::path>{folder_.path()});
     graph::CompileOptions options;
     options.width = options.height = 8;

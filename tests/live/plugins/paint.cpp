@@ -28,7 +28,8 @@ class Paint final : public Pass {
     if (LIVE_VERSION > 1) d.param("strength", 1.0f).range(0, 1);
   }
   void prepare(PrepareContext& c) override {
-    kernel_ = c.kernel("paint.glsl", {.bind = {}, .defines = {{"VERSION", std::to_string(LIVE_VERSION)}}, .sources = {}});
+    kernel_ =
+        c.kernel("paint.glsl", {.bind = {}, .defines = {{"VERSION", std::to_string(LIVE_VERSION)}}, .sources = {}});
   }
   void record(RecordContext& c) override { c.launch(kernel_); }
 
