@@ -24,6 +24,9 @@ class Binder {
   Binder(const PassCatalog& catalog, Findings& findings) : catalog_(catalog), findings_(findings) {}
 
   Checked bind(const Description& description) {
+    if (description.passes.size() > kMostPasses)
+      findings_.add(description.passes[kMostPasses].line, "passes",
+                    fmt::format("there are {} passes; expected at most {}", description.passes.size(), kMostPasses));
     std::vector<Node> nodes;
     nodes.reserve(description.passes.size());
     for (const PassEntry& entry : description.passes) {
@@ -36,8 +39,7 @@ class Binder {
     for (Node& node : checked_.nodes) bindInputs(node);
     for (const OutputEntry& entry : description.outputs) {
       OutputLink link{&entry, {}, {}};
-      if (entry.source)
-        link.written = find(*entry.source, entry.line, [&] { return "outputs." + entry.name; });
+      if (entry.source) link.written = find(*entry.source, entry.line, [&] { return "outputs." + entry.name; });
       checked_.outputs.push_back(link);
     }
     return std::move(checked_);

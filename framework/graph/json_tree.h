@@ -32,8 +32,8 @@ inline constexpr int kDeepestJson = 64;
 /// Longer keys and texts, in bytes, are refused: they are repeated in paths and messages.
 inline constexpr size_t kLongestKey = 1024, kLongestText = 65536;
 
-/// False, with a diagnostic, when the text is no JSON, too deep, or has an overlong key or text. Repeated keys are diagnostics too, but do not stop
-/// the reading. The elements of arrays are checked and dropped: no graph file has any.
+/// False, with a diagnostic, when the text is no JSON, too deep, or has an overlong key or text. Repeated keys are
+/// diagnostics too, but do not stop the reading. The elements of arrays are checked and dropped: no graph file has any.
 bool readJson(const std::string& text, const std::string& file, JsonValue& root, std::vector<Diagnostic>& diagnostics);
 
 }  // namespace weir::graph

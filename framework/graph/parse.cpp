@@ -51,10 +51,12 @@ class Parser {
     if (const JsonMember* member = keys.find("outputs")) outputs(member->value, {&top, "outputs"});
     if (const JsonMember* member = keys.find("passes")) hasPasses = passes(member->value, {&top, "passes"});
     if (const JsonMember* member = keys.find("version")) version(member->value);
-    if (!keys.find("version")) add(root.line, {nullptr, "version"}, fmt::format("is missing; expected \"version\": {}", kVersion));
+    if (!keys.find("version"))
+      add(root.line, {nullptr, "version"}, fmt::format("is missing; expected \"version\": {}", kVersion));
     if (!keys.find("passes")) add(root.line, {nullptr, "passes"}, "is missing; expected an object of passes");
     if (!keys.find("outputs"))
-      add(root.line, {nullptr, "outputs"}, "is missing; expected an object of at least one output, as \"color\": \"pass.port\"");
+      add(root.line, {nullptr, "outputs"},
+          "is missing; expected an object of at least one output, as \"color\": \"pass.port\"");
     d_.broken = !hasPasses;
     return std::move(d_);
   }
@@ -138,7 +140,8 @@ class Parser {
     const int64_t* number = as<int64_t>(value);
     if (number && *number == kVersion) return;
     const std::string found = value.kind == JsonValue::Kind::Scalar ? toText(value.scalar) : kind(value);
-    add(value.line, {nullptr, "version"}, fmt::format("expected {}, the only version there is, not {}", kVersion, found));
+    add(value.line, {nullptr, "version"},
+        fmt::format("expected {}, the only version there is, not {}", kVersion, found));
   }
 
   bool passes(const JsonValue& value, const Path& path) {
@@ -195,8 +198,7 @@ class Parser {
 
   void parameter(const JsonMember& member, const Path& path, PassEntry& entry) {
     if (member.value.kind != JsonValue::Kind::Scalar) {
-      add(member.value.line, path,
-          fmt::format("expected a number, a text, true or false, not {}", kind(member.value)));
+      add(member.value.line, path, fmt::format("expected a number, a text, true or false, not {}", kind(member.value)));
       return;
     }
     ParamEntry param;

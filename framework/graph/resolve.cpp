@@ -15,17 +15,16 @@ class Resolver {
   void resolve() {
     ways_.resize(checked_.nodes.size());
     for (uint32_t n = 0; n < ways_.size(); ++n)
-      if (const Node& node = checked_.nodes[n]; !node.enabled() && node.type) ways_[n].resize(node.type->outputs.size());
+      if (const Node& node = checked_.nodes[n]; !node.enabled() && node.type)
+        ways_[n].resize(node.type->outputs.size());
     for (Node& node : checked_.nodes) {
       if (!node.enabled()) continue;  // what a disabled pass reads is read by nobody
       for (Link& link : node.links)
-        link.resolved = follow(link.written, link.entry->line, [&] {
-          return fmt::format("passes.{}.inputs.{}", node.name(), link.entry->port);
-        });
+        link.resolved = follow(link.written, link.entry->line,
+                               [&] { return fmt::format("passes.{}.inputs.{}", node.name(), link.entry->port); });
     }
     for (OutputLink& output : checked_.outputs)
-      output.resolved =
-          follow(output.written, output.entry->line, [&] { return "outputs." + output.entry->name; });
+      output.resolved = follow(output.written, output.entry->line, [&] { return "outputs." + output.entry->name; });
   }
 
  private:
@@ -58,11 +57,11 @@ class Resolver {
     const Way& way = walk(written);
     const Meeting& meeting = written.previous ? way.first : way.second;
     if (meeting.node != kNone) {
-      findings_.add(line, path(),
-                    fmt::format("'{}' leads through the disabled pass '{}' to '{}', which makes it two frames old; "
-                                "expected at most one @previous on the way",
-                                checked_.text(written), checked_.nodes[meeting.node].name(),
-                                checked_.text(meeting.next)));
+      findings_.add(
+          line, path(),
+          fmt::format("'{}' leads through the disabled pass '{}' to '{}', which makes it two frames old; "
+                      "expected at most one @previous on the way",
+                      checked_.text(written), checked_.nodes[meeting.node].name(), checked_.text(meeting.next)));
       return {};
     }
     if (way.kind == Way::Kind::Stops) step(way.end, true);
@@ -135,9 +134,8 @@ class Resolver {
                                     [&](const PortDescription& port) { return port.name == output.passesThrough; });
     if (!compatible(output.type, input->type))
       return !say ? Source{}
-                  : refuse(source,
-                           fmt::format("its output '{}' is {}, its input '{}', which would stand for it, is {}",
-                                       output.name, describe(output.type), input->name, describe(input->type)));
+                  : refuse(source, fmt::format("its output '{}' is {}, its input '{}', which would stand for it, is {}",
+                                               output.name, describe(output.type), input->name, describe(input->type)));
     const Link* link = node.linkOf(static_cast<uint32_t>(input - node.type->inputs.begin()));
     if (link) return link->written;
     if (input->required || !say) return {};  // that a required one is open has been said

@@ -83,7 +83,8 @@ Json param(const ParamDescription& p) {
 
 /// "Reservoir v1" or "image RGBA32F": the stride and hash of a layout say nothing to whoever writes a graph.
 std::string carries(const PortType& type) {
-  return type.kind == PortKind::Image ? weir::describe(type) : fmt::format("{} v{}", type.layout.name, type.layout.version);
+  return type.kind == PortKind::Image ? weir::describe(type)
+                                      : fmt::format("{} v{}", type.layout.name, type.layout.version);
 }
 
 /// "Last frame's samples. Required; Reservoir v1, any number a pixel, at 1/2 of the frame's size."
@@ -150,13 +151,14 @@ std::string schemaJson(const PassCatalog& catalog) {
     choices.push_back({{"if", {{"properties", {{"type", {{"const", type}}}}}, {"required", {"type"}}}},
                        {"then", {{"$ref", "#/definitions/" + type}}}});
   }
-  Json anyPass = object({{"type", {{"description", "The pass, as \"plugin.Pass\"."}, {"type", "string"}}},
-                         {"enabled",
-                          {{"description", "Whether it runs. False: each output is what the pass passes through."},
-                           {"type", "boolean"},
-                           {"default", true}}},
-                         {"inputs", {{"description", "What each input reads."}, {"type", "object"}}},
-                         {"params", {{"description", "Parameters that differ from their defaults."}, {"type", "object"}}}});
+  Json anyPass =
+      object({{"type", {{"description", "The pass, as \"plugin.Pass\"."}, {"type", "string"}}},
+              {"enabled",
+               {{"description", "Whether it runs. False: each output is what the pass passes through."},
+                {"type", "boolean"},
+                {"default", true}}},
+              {"inputs", {{"description", "What each input reads."}, {"type", "object"}}},
+              {"params", {{"description", "Parameters that differ from their defaults."}, {"type", "object"}}}});
   anyPass["required"] = {"type"};
   if (!types.empty()) {
     anyPass["properties"]["type"]["enum"] = std::move(types);

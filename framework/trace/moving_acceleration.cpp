@@ -73,8 +73,8 @@ void MovingAcceleration::packInstances(const scene::SceneState& state, uint32_t 
   for (size_t i = 0; i < scene_.instances.size(); ++i) {
     const uint32_t range = scene_.instances[i].range;
     const int own = half.bottomOfRange[range];
-    into[i] = instanceOf(scene_, i, state.toWorld[i],
-                         own >= 0 ? half.bottom[own].structure.address() : still_.bottom(range));
+    into[i] =
+        instanceOf(scene_, i, state.toWorld[i], own >= 0 ? half.bottom[own].structure.address() : still_.bottom(range));
   }
 }
 

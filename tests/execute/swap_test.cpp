@@ -1,5 +1,5 @@
-// One graph takes another's place between two frames: what of it goes on, what starts anew, and what is left when the new
-// one cannot be had.
+// One graph takes another's place between two frames: what of it goes on, what starts anew, and what is left when the
+// new one cannot be had.
 #include <fstream>
 
 #include "execute/graph_run.h"

@@ -86,11 +86,11 @@ class Culling : public ::testing::Test {
 };
 
 TEST_F(Culling, EachReason) {
-  const Result r = fine({"s: Source", "used: Filter i=s.o", "unread: Filter i=s.o", "chain1: Filter i=s.o",
-                         "chain2: Filter i=chain1.o", "fork: Filter i=s.o", "left: Filter i=fork.o",
-                         "right: Filter i=fork.o@previous", "-off: Filter i=used.o", "-gone: Mix a=s.o b=side.o",
-                         "side: Filter i=s.o", "last: Mix a=off.o b=gone.o"},
-                        {{"x", "last.o"}});
+  const Result r = fine(
+      {"s: Source", "used: Filter i=s.o", "unread: Filter i=s.o", "chain1: Filter i=s.o", "chain2: Filter i=chain1.o",
+       "fork: Filter i=s.o", "left: Filter i=fork.o", "right: Filter i=fork.o@previous", "-off: Filter i=used.o",
+       "-gone: Mix a=s.o b=side.o", "side: Filter i=s.o", "last: Mix a=off.o b=gone.o"},
+      {{"x", "last.o"}});
   EXPECT_EQ(r.order(), (Names{"s", "used", "last"}));
   const std::map<std::string, std::string> expected = {
       {"unread", "nothing reads it"},
@@ -118,7 +118,8 @@ TEST_F(Culling, ACircleThroughLastFrameThatNobodyReadsIsSkipped) {
 }
 
 TEST_F(Culling, OptionalInputsMayBeOpenAndOthersNot) {
-  const Result r = fine({"s: Source", "open: Maybe i=s.o", "full: Maybe i=open.o extra=s.o@previous"}, {{"x", "full.o"}});
+  const Result r =
+      fine({"s: Source", "open: Maybe i=s.o", "full: Maybe i=open.o extra=s.o@previous"}, {{"x", "full.o"}});
   EXPECT_EQ(r.source("open", "i"), "s.o");
   EXPECT_EQ(r.source("open", "extra"), "");
   EXPECT_EQ(r.source("full", "extra"), "s.o@previous");
@@ -134,9 +135,10 @@ TEST_F(Culling, AnOpenOptionalInputKeepsNobodyAlive) {
 }
 
 TEST_F(Culling, OneOutputFeedsMany) {
-  const Result r = fine({"s: Source", "a: Filter i=s.o", "b: Filter i=s.o", "c: Mix a=s.o b=s.o", "d: Filter i=s.o@previous",
-                         "ab: Mix a=a.o b=b.o", "cd: Mix a=c.o b=d.o", "z: Mix a=ab.o b=cd.o"},
-                        {{"x", "z.o"}, {"y", "s.o"}, {"again", "s.o"}});
+  const Result r =
+      fine({"s: Source", "a: Filter i=s.o", "b: Filter i=s.o", "c: Mix a=s.o b=s.o", "d: Filter i=s.o@previous",
+            "ab: Mix a=a.o b=b.o", "cd: Mix a=c.o b=d.o", "z: Mix a=ab.o b=cd.o"},
+           {{"x", "z.o"}, {"y", "s.o"}, {"again", "s.o"}});
   const size_t count = static_cast<size_t>(std::count_if(r.graph.resources.begin(), r.graph.resources.end(),
                                                          [](const Resource& x) { return x.name == "s.o"; }));
   EXPECT_EQ(count, 1u) << "one resource, however many read it";
@@ -164,9 +166,9 @@ TEST_F(Culling, SizesAreSharesOfTheFrameRoundedUp) {
                {1919, 1081, 960, 541, 480, 271, 2879, 1622},
                {40000, 40001, 20000, 20001, 10000, 10001, 60000, 60002}};
   for (const auto& c : cases) {
-    const Result r = fine({"s: Source", "h: Half i=s.o", "q: Quarter i=h.o", "j: Join full=s.o half=h.o quarter=q.o",
-                           "t: ThreeHalves"},
-                          {{"x", "j.o"}, {"t", "t.o"}}, c.width, c.height);
+    const Result r = fine(
+        {"s: Source", "h: Half i=s.o", "q: Quarter i=h.o", "j: Join full=s.o half=h.o quarter=q.o", "t: ThreeHalves"},
+        {{"x", "j.o"}, {"t", "t.o"}}, c.width, c.height);
     const auto expectSize = [&](const char* name, uint32_t width, uint32_t height, uint64_t bytesEach) {
       EXPECT_EQ(r.resource(name).width, width) << name << " at " << c.width << "x" << c.height;
       EXPECT_EQ(r.resource(name).height, height) << name << " at " << c.width << "x" << c.height;
@@ -206,8 +208,13 @@ TEST_F(Culling, ScalesAreEqualAsFractions) {
 }
 
 TEST_F(Culling, DisabledChains) {
-  const Names passes = {"s: Source", "-a: Filter i=s.o", "-b: Mix a=a.o b=s.o", "-c: Filter i=b.o",
-                        "now: Filter i=c.o", "past: Filter i=c.o@previous", "z: Mix a=now.o b=past.o"};
+  const Names passes = {"s: Source",
+                        "-a: Filter i=s.o",
+                        "-b: Mix a=a.o b=s.o",
+                        "-c: Filter i=b.o",
+                        "now: Filter i=c.o",
+                        "past: Filter i=c.o@previous",
+                        "z: Mix a=now.o b=past.o"};
   const Result r = fine(passes, {{"x", "z.o"}, {"c", "c.o@previous"}});
   EXPECT_EQ(r.order(), (Names{"past", "s", "now", "z"}));
   EXPECT_EQ(r.source("now", "i"), "s.o");
@@ -241,8 +248,9 @@ TEST_F(Culling, LastFramesAddUpThroughDisabledPasses) {
   const Names passes = {"s: Source", "-a: Filter i=s.o@previous", "-b: Filter i=a.o", "z: Filter i=b.o"};
   const Result r = fine(passes, {{"x", "z.o"}});
   EXPECT_EQ(r.source("z", "i"), "s.o@previous");
-  for (const Names& twice : {Names{"s: Source", "-a: Filter i=s.o@previous", "-b: Filter i=a.o", "z: Filter i=b.o@previous"},
-                             Names{"s: Source", "-a: Filter i=s.o@previous", "-b: Filter i=a.o@previous", "z: Filter i=b.o"}}) {
+  for (const Names& twice :
+       {Names{"s: Source", "-a: Filter i=s.o@previous", "-b: Filter i=a.o", "z: Filter i=b.o@previous"},
+        Names{"s: Source", "-a: Filter i=s.o@previous", "-b: Filter i=a.o@previous", "z: Filter i=b.o"}}) {
     const Result bad = compile(twice, {{"x", "z.o"}});
     ASSERT_EQ(bad.diagnostics.size(), 1u) << bad.text();
     EXPECT_EQ(bad.diagnostics[0].path, "passes.z.inputs.i");
@@ -257,8 +265,8 @@ TEST_F(Culling, AWayThroughTwoOutputsOfOneDisabledPassIsNoCircle) {
   fakes.add("t.Two").output("p", storageImage(Format::R32F)).passesThrough("b");
   const Result r = fine({"s: Source", "-f: Filter i=t.p", "-t: Two a=f.o b=s.o", "z: Filter i=t.o"}, {{"x", "z.o"}});
   EXPECT_EQ(r.source("z", "i"), "s.o");
-  const Result circle = compile({"s: Source", "-f: Filter i=t.o", "-t: Two a=f.o b=s.o", "z: Mix a=t.o b=f.o@previous"},
-                                {{"x", "z.o"}});
+  const Result circle =
+      compile({"s: Source", "-f: Filter i=t.o", "-t: Two a=f.o b=s.o", "z: Mix a=t.o b=f.o@previous"}, {{"x", "z.o"}});
   ASSERT_EQ(circle.diagnostics.size(), 1u) << circle.text();
   EXPECT_NE(circle.text().find("t → f → t"), std::string::npos) << circle.text();
 }
@@ -271,11 +279,11 @@ std::string planText(const CompiledGraph& graph) {
 }
 
 TEST_F(Culling, ShuffledKeysGiveTheSamePlan) {
-  const Json graph = Json::parse(graphOf(
-      {"s: Source", "m: Many", "-a: Filter i=s.o", "b: Mix a=a.o b=m.a", "c: Mix a=b.o b=c.o@previous", "h: Half i=c.o",
-       "q: Quarter i=h.o", "j: Join full=c.o half=h.o quarter=q.o", "unread: Filter i=j.o", "d: Filter i=m.b",
-       "e: Filter i=m.b", "f: Maybe i=d.o extra=e.o", "z: Mix a=f.o b=j.o"},
-      {{"x", "z.o"}, {"y", "c.o@previous"}, {"w", "m.a"}}));
+  const Json graph = Json::parse(
+      graphOf({"s: Source", "m: Many", "-a: Filter i=s.o", "b: Mix a=a.o b=m.a", "c: Mix a=b.o b=c.o@previous",
+               "h: Half i=c.o", "q: Quarter i=h.o", "j: Join full=c.o half=h.o quarter=q.o", "unread: Filter i=j.o",
+               "d: Filter i=m.b", "e: Filter i=m.b", "f: Maybe i=d.o extra=e.o", "z: Mix a=f.o b=j.o"},
+              {{"x", "z.o"}, {"y", "c.o@previous"}, {"w", "m.a"}}));
   std::mt19937 random(5);
   const auto shuffled = [&](const Json& object, const auto& self) -> Json {
     if (!object.is_object()) return object;
