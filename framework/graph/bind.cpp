@@ -24,6 +24,9 @@ class Binder {
   Binder(const PassCatalog& catalog, Findings& findings) : catalog_(catalog), findings_(findings) {}
 
   Checked bind(const Description& description) {
+    if (description.passes.size() > kMostPasses)
+      findings_.add(description.passes[kMostPasses].line, "passes",
+                    fmt::format("there are {} passes; expected at most {}", description.passes.size(), kMostPasses));
     std::vector<Node> nodes;
     nodes.reserve(description.passes.size());
     for (const PassEntry& entry : description.passes) {

@@ -4,6 +4,7 @@
 #include <weir/graph/diagnostic.h>
 #include <weir/pass/description.h>
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <variant>
@@ -55,6 +56,9 @@ struct OutputEntry {
   std::optional<Reference> source;
   int line = 0;
 };
+
+/// More passes than this are refused. Sharing memory takes time and space by their square: at this many a second.
+inline constexpr size_t kMostPasses = 4096;
 
 struct Description {
   std::string file, name;
