@@ -8,16 +8,19 @@
 //
 // and where memory is shared, the last reads of whoever had it stand before the write too.
 //
-// A memory barrier is global: it holds for everything that its stages did, not for one resource. So a dependency from
-// pass A to pass B is an interval of time, a barrier a point in it, and the fewest barriers are the fewest points that
-// every interval contains one of: going through the frame, one is placed where an interval ends that has none yet.
+// A memory barrier is global: it holds for everything that its stages did, not for one resource, and barriers chain. So
+// a dependency from pass A to pass B is an interval of time, a barrier a point in it, and the fewest barriers are the
+// fewest points that every interval contains one of: going through the frame, one is placed where an interval ends that
+// has none yet. What of it others there see to is then taken away again, so that no bit is left that nobody needs.
 #include <weir/graph/checked.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 namespace weir::graph {
 namespace {
@@ -57,14 +60,45 @@ class Hazards {
   void beforeWriting(CompiledPass& p, uint32_t resource) {
     const Resource& r = graph_.resources[resource];
     if (r.external) return;  // the host comes before and after
+    if (r.shares) return takeOver(p, resource);
     usesOf(p, resource, resource, r.history ? 2 : 1);
     for (const uint32_t reader : later_[resource])
       p.dependencies.push_back({Hazard::WriteAfterRead, resource, resource, reader, 1});
-    if (!r.shares) return;
+  }
+
+  /// Who had a byte last waited for all who had it before, so that for each byte one use has to be over.
+  void takeOver(CompiledPass& p, uint32_t resource) {
+    const Resource& r = graph_.resources[resource];
+    const auto passes = static_cast<uint32_t>(graph_.passes.size());
+    before_.clear();
     for (const uint32_t other : sharing_) {
       const Resource& o = graph_.resources[other];
-      if (other != resource && shareMemory(r, o)) usesOf(p, resource, other, o.lastUse < r.firstUse ? 0 : 1);
+      if (other != resource && shareMemory(r, o))
+        before_.emplace_back(o.lastUse < r.firstUse ? o.lastUse + passes : o.lastUse, other);
     }
+    std::sort(before_.begin(), before_.end(), std::greater<>());
+    open_.assign(1, {r.offset, r.offset + r.memoryBytes});
+    for (const auto& [lastUse, other] : before_)
+      if (takeFromOpen(graph_.resources[other])) usesOf(p, resource, other, lastUse >= passes ? 0 : 1);
+    if (!open_.empty()) usesOf(p, resource, resource, 1);
+  }
+
+  /// Whether some of the bytes that nobody was found for yet were this one's; then they are found.
+  bool takeFromOpen(const Resource& r) {
+    const uint64_t begin = r.offset, end = r.offset + r.memoryBytes;
+    rest_.clear();
+    bool taken = false;
+    for (const Bytes& bytes : open_) {
+      if (bytes.end <= begin || end <= bytes.begin) {
+        rest_.push_back(bytes);
+        continue;
+      }
+      taken = true;
+      if (bytes.begin < begin) rest_.push_back({bytes.begin, begin});
+      if (end < bytes.end) rest_.push_back({end, bytes.end});
+    }
+    open_.swap(rest_);
+    return taken;
   }
 
   /// All uses of `had` in that frame must be over before `wanted` is written.
@@ -79,28 +113,49 @@ class Hazards {
   CompiledGraph& graph_;
   std::vector<std::vector<uint32_t>> readers_, later_;  ///< by resource: passes that read it, now and as previous
   std::vector<uint32_t> sharing_;
+  struct Bytes {
+    uint64_t begin, end;
+  };
+  std::vector<Bytes> open_, rest_;
+  std::vector<std::pair<uint32_t, uint32_t>> before_;  ///< last use, resource
 };
-
-/// An image that takes over memory has a barrier of its own, which covers all that it depends on.
-void startImages(CompiledGraph& graph, CompiledPass& p) {
-  p.starts.clear();
-  for (Dependency& d : p.dependencies) {
-    const Resource& r = graph.resources[d.resource];
-    if (d.hazard == Hazard::ReadAfterWrite || !r.shares || !r.isImage()) continue;
-    d.covered = true;
-    if (p.starts.empty() || p.starts.back().resource != d.resource) p.starts.push_back({d.resource});
-    p.starts.back().from |= graph.passes[d.pass].stages;
-    p.starts.back().writes |= d.hazard == Hazard::WriteAfterWrite;
-  }
-}
 
 /// Times count passes since the first frame; a barrier at time t stands before the pass of that time.
 using Time = int64_t;
 constexpr Time kNever = std::numeric_limits<Time>::min();
 
-/// Barriers from one stage to another. Each stronger kind orders as well.
-struct Last {
-  Time order = kNever, read = kNever, write = kNever;
+template <typename T>
+using ByStages = std::array<std::array<T, kStages.size()>, kStages.size()>;  ///< from, to
+
+/// All that barriers before one pass do, one command: what holds from stage to stage.
+enum Effect : uint8_t { kOrders = 1, kMakesAvailable = 2, kToReads = 4, kToWrites = 8 };
+using Command = ByStages<uint8_t>;
+
+/// What the barriers so far have come to: the work of one stage before this time is ordered before the coming work of
+/// another, its writes available to that one's barriers, visible to its reads, to its writes.
+struct Reach {
+  struct Times {
+    Time order = kNever, available = kNever, reads = kNever, writes = kNever;
+  };
+  ByStages<Times> of{};
+
+  Reach after(const Command& command, Time now) const {
+    Reach next = *this;
+    for (size_t via = 0; via < kStages.size(); ++via)
+      for (size_t to = 0; to < kStages.size(); ++to) {
+        const uint8_t does = command[via][to];
+        if (does == 0) continue;
+        for (size_t from = 0; from < kStages.size(); ++from) {  // from == via, or a chain
+          Times& t = next.of[from][to];
+          const Time available = from == via && (does & kMakesAvailable) != 0 ? now : of[from][via].available;
+          t.order = std::max(t.order, from == via ? now : of[from][via].order);
+          t.available = std::max(t.available, available);
+          if ((does & kToReads) != 0) t.reads = std::max(t.reads, available);
+          if ((does & kToWrites) != 0) t.writes = std::max(t.writes, available);
+        }
+      }
+    return next;
+  }
 };
 
 class Placement {
@@ -111,33 +166,66 @@ class Placement {
   bool frame() {
     bool same = true;
     for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
-      std::vector<Wait> before = std::move(graph_.passes[p].waits);
+      const std::vector<Wait> waits = std::move(graph_.passes[p].waits);
+      const std::vector<ImageStart> starts = std::move(graph_.passes[p].starts);
       place(p);
-      same = same && before == graph_.passes[p].waits;
+      same = same && waits == graph_.passes[p].waits && starts == graph_.passes[p].starts;
     }
     ++frame_;
     return same;
   }
-  void forget() { last_ = {}; }
+  void forget() { reach_ = {}; }
 
  private:
   Time time(uint32_t pass, uint32_t framesBack) const { return (frame_ - framesBack) * passes_ + pass; }
+  static bool has(Stages mask, size_t stage) { return (mask & kStages[stage]) != 0; }
 
   void place(uint32_t index) {
     CompiledPass& p = graph_.passes[index];
-    p.waits.clear();
     const Time now = time(index, 0);
-    // Barriers that carry data first: they order too, so that what only needs order finds it done.
-    for (const bool carries : {true, false})
-      for (Dependency& d : p.dependencies) {
-        if ((d.hazard != Hazard::WriteAfterRead) != carries || isStart(d)) continue;
-        d.covered = true;
-        for (size_t from = 0; from < kStages.size(); ++from)
-          for (size_t to = 0; to < kStages.size(); ++to)
-            if ((graph_.passes[d.pass].stages & kStages[from]) != 0 && (p.stages & kStages[to]) != 0)
-              d.covered &= contains(d, last_[from][to], now) || !add(p, d.hazard, from, to, now);
-      }
+    startImages(p);
+    Command starts{};  // what they order is not their images alone
+    for (const ImageStart& s : p.starts)
+      for (size_t from = 0; from < kStages.size(); ++from)
+        for (size_t to = 0; to < kStages.size(); ++to)
+          if (has(s.from, from) && has(p.stages, to)) starts[from][to] = kOrders;
+    for (Dependency& d : p.dependencies) d.covered = isStart(d) || isMet(d, p, reach_);
+    Command command = starts;
+    for (const Dependency& d : p.dependencies)
+      if (!d.covered) add(command, d, p, now);
+    if (command != starts) reduce(command, starts, p, now);
+    reach_ = reach_.after(command, now);
+    p.waits.clear();
+    for (size_t from = 0; from < kStages.size(); ++from)
+      for (size_t to = 0; to < kStages.size(); ++to)
+        if (command[from][to] != starts[from][to]) p.waits.push_back(waitOf(from, to, command[from][to]));
     merge(p);
+  }
+
+  /// An image that takes over memory has a barrier of its own, for all that it depends on.
+  void startImages(CompiledPass& p) const {
+    p.starts.clear();
+    for (const Dependency& d : p.dependencies) {
+      if (!isStart(d)) continue;
+      if (p.starts.empty() || p.starts.back().resource != d.resource) p.starts.push_back({d.resource});
+      p.starts.back().from |= graph_.passes[d.pass].stages;
+      p.starts.back().writes |= d.hazard == Hazard::WriteAfterWrite;
+    }
+    for (ImageStart& start : p.starts) {
+      ImageStart less = start;
+      const auto tryIt = [&] {
+        const bool enough = std::all_of(p.dependencies.begin(), p.dependencies.end(), [&](const Dependency& d) {
+          return d.resource != less.resource || !isStart(d) || isMet(d, less);
+        });
+        (enough ? start : less) = enough ? less : start;
+      };
+      less.writes = false;
+      tryIt();
+      for (const Stages stage : kStages) {
+        less.from &= static_cast<Stages>(~stage);
+        tryIt();
+      }
+    }
   }
 
   bool isStart(const Dependency& d) const {
@@ -145,60 +233,89 @@ class Placement {
     return d.hazard != Hazard::ReadAfterWrite && r.shares && r.isImage();
   }
 
-  /// Whether there is a barrier within the dependency, of an earlier pass or of this one.
-  bool contains(const Dependency& d, const Last& last, Time now) const {
-    const Time after = time(d.pass, d.framesBack), at = d.hazard == Hazard::ReadAfterWrite    ? last.read
-                                                        : d.hazard == Hazard::WriteAfterWrite ? last.write
-                                                                                              : last.order;
-    return at > after && at < now;
+  /// Whether the image's barrier comes after it: from the stages of the use itself, or by a chain.
+  bool isMet(const Dependency& d, const ImageStart& start) const {
+    const Time used = time(d.pass, d.framesBack);
+    const bool wrote = d.hazard == Hazard::WriteAfterWrite;
+    for (size_t stage = 0; stage < kStages.size(); ++stage) {
+      if (!has(graph_.passes[d.pass].stages, stage)) continue;
+      bool met = has(start.from, stage) && (start.writes || !wrote);
+      for (size_t via = 0; via < kStages.size(); ++via) {
+        const Reach::Times& t = reach_.of[stage][via];
+        met |= has(start.from, via) && (wrote ? t.available : t.order) > used;
+      }
+      if (!met) return false;
+    }
+    return true;
   }
 
-  /// Always true: the barrier stands before this very pass, so that the dependency is not covered by another's.
-  bool add(CompiledPass& p, Hazard hazard, size_t from, size_t to, Time now) {
-    Last& last = last_[from][to];
-    const bool order = hazard == Hazard::WriteAfterRead;
-    if (order && last.order == now) return true;
-    last.order = now;
-    if (hazard == Hazard::ReadAfterWrite) last.read = now;
-    if (hazard == Hazard::WriteAfterWrite) last.write = now;
-    p.waits.push_back(
-        {kStages[from], kStages[to], !order, hazard == Hazard::ReadAfterWrite, hazard == Hazard::WriteAfterWrite});
+  bool isMet(const Dependency& d, const Reach::Times& t) const {
+    const Time used = time(d.pass, d.framesBack);
+    if (d.hazard == Hazard::WriteAfterRead) return t.order > used;
+    return (d.hazard == Hazard::ReadAfterWrite ? t.reads : t.writes) > used;
+  }
+
+  bool isMet(const Dependency& d, const CompiledPass& p, const Reach& reach) const {
+    for (size_t from = 0; from < kStages.size(); ++from)
+      for (size_t to = 0; to < kStages.size(); ++to)
+        if (has(graph_.passes[d.pass].stages, from) && has(p.stages, to) && !isMet(d, reach.of[from][to])) return false;
     return true;
+  }
+
+  void add(Command& command, const Dependency& d, const CompiledPass& p, Time now) const {
+    const Reach reach = reach_.after(command, now);
+    uint8_t does = kOrders;
+    if (d.hazard == Hazard::ReadAfterWrite) does |= kMakesAvailable | kToReads;
+    if (d.hazard == Hazard::WriteAfterWrite) does |= kMakesAvailable | kToWrites;
+    for (size_t from = 0; from < kStages.size(); ++from)
+      for (size_t to = 0; to < kStages.size(); ++to)
+        if (has(graph_.passes[d.pass].stages, from) && has(p.stages, to) && !isMet(d, reach.of[from][to]))
+          command[from][to] |= does;
+  }
+
+  /// Takes away what the rest does without: first whole pairs of stages, then single effects.
+  void reduce(Command& command, const Command& starts, const CompiledPass& p, Time now) const {
+    constexpr uint8_t kAll = kOrders | kMakesAvailable | kToReads | kToWrites;
+    for (const uint8_t effect : {uint8_t{kAll}, uint8_t{kToReads}, uint8_t{kToWrites}, uint8_t{kMakesAvailable}})
+      for (size_t from = 0; from < kStages.size(); ++from)
+        for (size_t to = 0; to < kStages.size(); ++to) {
+          const uint8_t whole = command[from][to];
+          command[from][to] = static_cast<uint8_t>((whole & ~effect) | starts[from][to]);
+          if (command[from][to] == whole) continue;
+          const Reach reach = reach_.after(command, now);
+          if (!std::all_of(p.dependencies.begin(), p.dependencies.end(),
+                           [&](const Dependency& d) { return d.covered || isMet(d, p, reach); }))
+            command[from][to] = whole;
+        }
+  }
+
+  static Wait waitOf(size_t from, size_t to, uint8_t does) {
+    return {kStages[from], kStages[to], (does & kMakesAvailable) != 0, (does & kToReads) != 0, (does & kToWrites) != 0};
   }
 
   /// One barrier for each set of stages that waits in the same way.
   static void merge(CompiledPass& p) {
-    std::vector<Wait> merged;
-    const auto into = [&](const Wait& w, auto alike, auto join) {
-      const auto found = std::find_if(merged.begin(), merged.end(), [&](const Wait& m) { return alike(m, w); });
-      if (found == merged.end())
-        merged.push_back(w);
-      else
-        join(*found, w);
+    const auto join = [&](auto alike, Stages Wait::*mask) {
+      std::vector<Wait> joined;
+      for (const Wait& w : p.waits) {
+        const auto found = std::find_if(joined.begin(), joined.end(), [&](const Wait& j) {
+          return alike(j) == alike(w) && std::tie(j.writes, j.toReads, j.toWrites) ==
+                                             std::tie(w.writes, w.toReads, w.toWrites);
+        });
+        if (found == joined.end())
+          joined.push_back(w);
+        else
+          (*found).*mask |= w.*mask;
+      }
+      p.waits = std::move(joined);
     };
-    for (const Wait& w : p.waits)
-      into(
-          w, [](const Wait& m, const Wait& o) { return m.from == o.from && m.to == o.to; },
-          [](Wait& m, const Wait& o) {
-            m.writes |= o.writes;
-            m.toReads |= o.toReads;
-            m.toWrites |= o.toWrites;
-          });
-    std::vector<Wait> atoms = std::move(merged);
-    merged.clear();
-    for (const Wait& w : atoms)
-      into(
-          w,
-          [](const Wait& m, const Wait& o) {
-            return std::tie(m.to, m.writes, m.toReads, m.toWrites) == std::tie(o.to, o.writes, o.toReads, o.toWrites);
-          },
-          [](Wait& m, const Wait& o) { m.from |= o.from; });
-    p.waits = std::move(merged);
+    join([](const Wait& w) { return w.to; }, &Wait::from);
+    join([](const Wait& w) { return w.from; }, &Wait::to);
   }
 
   CompiledGraph& graph_;
   Time passes_, frame_ = 0;
-  std::array<std::array<Last, kStages.size()>, kStages.size()> last_{};
+  Reach reach_;
 };
 
 }  // namespace
@@ -207,8 +324,8 @@ void planBarriers(CompiledGraph& graph) {
   Hazards hazards(graph);
   for (uint32_t p = 0; p < graph.passes.size(); ++p) {
     hazards.list(p);
-    startImages(graph, graph.passes[p]);
     graph.passes[p].waits.clear();
+    graph.passes[p].starts.clear();
   }
   // What stands in a frame depends on what stood in the one before. It settles after a frame or two; should it ever
   // not, a frame that trusts only its own barriers is right as well.
