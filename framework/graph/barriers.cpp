@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -130,6 +131,9 @@ using ByStages = std::array<std::array<T, kStages.size()>, kStages.size()>;  ///
 /// All that barriers before one pass do, one command: what holds from stage to stage.
 enum Effect : uint8_t { kOrders = 1, kMakesAvailable = 2, kToReads = 4, kToWrites = 8 };
 using Command = ByStages<uint8_t>;
+/// What is tried to be taken away, in this order.
+constexpr std::array<uint8_t, 4> kLosses = {kOrders | kMakesAvailable | kToReads | kToWrites, kToReads, kToWrites,
+                                            kMakesAvailable};
 
 /// What the barriers so far have come to: the work of one stage before this time is ordered before the coming work of
 /// another, its writes available to that one's barriers, visible to its reads, to its writes.
@@ -139,13 +143,13 @@ struct Reach {
   };
   ByStages<Times> of{};
 
-  Reach after(const Command& command, Time now) const {
+  Reach after(const Command& command, Time now, std::span<const size_t> stages) const {
     Reach next = *this;
-    for (size_t via = 0; via < kStages.size(); ++via)
-      for (size_t to = 0; to < kStages.size(); ++to) {
+    for (const size_t via : stages)
+      for (const size_t to : stages) {
         const uint8_t does = command[via][to];
         if (does == 0) continue;
-        for (size_t from = 0; from < kStages.size(); ++from) {  // from == via, or a chain
+        for (const size_t from : stages) {  // from == via, or a chain
           Times& t = next.of[from][to];
           const Time available = from == via && (does & kMakesAvailable) != 0 ? now : of[from][via].available;
           t.order = std::max(t.order, from == via ? now : of[from][via].order);
@@ -160,46 +164,147 @@ struct Reach {
 
 class Placement {
  public:
-  explicit Placement(CompiledGraph& graph) : graph_(graph), passes_(static_cast<Time>(graph.passes.size())) {}
-
-  /// The barriers of one frame, given those of the frames before it. True when they are the same as the frame before's.
-  bool frame() {
-    bool same = true;
-    for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
-      const std::vector<Wait> waits = std::move(graph_.passes[p].waits);
-      const std::vector<ImageStart> starts = std::move(graph_.passes[p].starts);
-      place(p);
-      same = same && waits == graph_.passes[p].waits && starts == graph_.passes[p].starts;
-    }
-    ++frame_;
-    return same;
+  explicit Placement(CompiledGraph& graph)
+      : graph_(graph), passes_(static_cast<Time>(graph.passes.size())), waits_(graph.passes.size()) {
+    for (size_t stage = 0; stage < kStages.size(); ++stage)
+      if (std::any_of(graph.passes.begin(), graph.passes.end(),
+                      [&](const CompiledPass& p) { return has(p.stages, stage); }))
+        stages_.push_back(stage);
   }
-  void forget() { reach_ = {}; }
+
+  void plan() {
+    // What stands in a frame depends on what stood in the one before. It settles after a frame or two. Dependencies
+    // reach two frames back, so that three have to be alike.
+    constexpr int kTries = 8;
+    int alike = 0;
+    for (int i = 0; i < kTries && alike < 2; ++i) alike = frame() ? alike + 1 : 0;
+    if (alike < 2) {  // a frame that trusts only its own barriers is right as well, and all frames are then like it
+      reach_ = {};
+      frame();
+    }
+    trim();
+  }
 
  private:
   Time time(uint32_t pass, uint32_t framesBack) const { return (frame_ - framesBack) * passes_ + pass; }
   static bool has(Stages mask, size_t stage) { return (mask & kStages[stage]) != 0; }
 
+  /// The barriers of one frame, given those of the frames before it. True when they are the same as the frame before's.
+  bool frame() {
+    // Looking back further than a frame would find the barriers that are just being decided on anew.
+    farthest_ = passes_;
+    bool same = true;
+    for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
+      const Command waits = waits_[p];
+      const std::vector<ImageStart> starts = std::move(graph_.passes[p].starts);
+      place(p);
+      same = same && waits == waits_[p] && starts == graph_.passes[p].starts;
+    }
+    ++frame_;
+    return same;
+  }
+
   void place(uint32_t index) {
     CompiledPass& p = graph_.passes[index];
-    const Time now = time(index, 0);
+    now_ = time(index, 0);
     startImages(p);
-    Command starts{};  // what they order is not their images alone
-    for (const ImageStart& s : p.starts)
-      for (size_t from = 0; from < kStages.size(); ++from)
-        for (size_t to = 0; to < kStages.size(); ++to)
-          if (has(s.from, from) && has(p.stages, to)) starts[from][to] = kOrders;
+    const Command starts = startsOf(p);
     for (Dependency& d : p.dependencies) d.covered = isStart(d) || isMet(d, p, reach_);
     Command command = starts;
     for (const Dependency& d : p.dependencies)
-      if (!d.covered) add(command, d, p, now);
-    if (command != starts) reduce(command, starts, p, now);
-    reach_ = reach_.after(command, now);
-    p.waits.clear();
-    for (size_t from = 0; from < kStages.size(); ++from)
-      for (size_t to = 0; to < kStages.size(); ++to)
-        if (command[from][to] != starts[from][to]) p.waits.push_back(waitOf(from, to, command[from][to]));
-    merge(p);
+      if (!d.covered) add(command, d, p);
+    if (command != starts) reduce(command, starts, p);
+    for (const size_t from : stages_)
+      for (const size_t to : stages_)
+        waits_[index][from][to] = command[from][to] == starts[from][to] ? uint8_t{0} : command[from][to];
+    reach_ = reach_.after(command, now_, stages_);
+  }
+
+  /// What the barriers of starting images order is not their images alone.
+  Command startsOf(const CompiledPass& p) const {
+    Command starts{};
+    for (const ImageStart& s : p.starts)
+      for (const size_t from : stages_)
+        for (const size_t to : stages_)
+          if (has(s.from, from) && has(p.stages, to)) starts[from][to] = kOrders;
+    return starts;
+  }
+
+  Command commandOf(uint32_t index) const {
+    Command command = startsOf(graph_.passes[index]);
+    for (const size_t from : stages_)
+      for (const size_t to : stages_) command[from][to] |= waits_[index][from][to];
+    return command;
+  }
+
+  /// Whether all that a pass depends on is over when its barriers stand where `before` holds.
+  bool isRight(uint32_t index, const Reach& before) const {
+    const CompiledPass& p = graph_.passes[index];
+    const Reach after = before.after(commandOf(index), now_, stages_);
+    for (const Dependency& d : p.dependencies) {
+      if (!isStart(d) && !isMet(d, p, after)) return false;
+      for (const ImageStart& s : p.starts)
+        if (s.resource == d.resource && isStart(d) && !isMet(d, s, before)) return false;
+    }
+    return true;
+  }
+
+  /// Goes through frames with the barriers as they are, up to before a pass of the fourth: what came before the first
+  /// makes no difference any more. Whether that last one is right as far as it goes.
+  bool follow(uint32_t end) {
+    constexpr Time kFourth = 3;
+    reach_ = {};
+    for (Time step = 0; step < kFourth * passes_ + end; ++step) {
+      const auto p = static_cast<uint32_t>(step % passes_);
+      frame_ = step / passes_;
+      now_ = step;
+      if (frame_ == kFourth && !isRight(p, reach_)) return false;
+      reach_ = reach_.after(commandOf(p), now_, stages_);
+    }
+    frame_ = kFourth;
+    now_ = time(end, 0);
+    return true;
+  }
+
+  /// Takes away what turns out to be spare when all frames are alike.
+  void trim() {
+    farthest_ = std::numeric_limits<Time>::max();
+    follow(0);
+    for (uint32_t index = 0; index < graph_.passes.size(); ++index) {
+      CompiledPass& p = graph_.passes[index];
+      now_ = time(index, 0);
+      for (ImageStart& start : p.starts) {
+        tryLess(index, start, [](ImageStart& s) { s.writes = false; });
+        for (const Stages stage : kStages)
+          tryLess(index, start, [&](ImageStart& s) { s.from &= static_cast<Stages>(~stage); });
+      }
+      for (const size_t from : stages_)
+        for (const size_t to : stages_)
+          for (const uint8_t effect : kLosses)
+            tryLess(index, waits_[index][from][to], [&](uint8_t& d) { d = static_cast<uint8_t>(d & ~effect); });
+      for (Dependency& d : p.dependencies) d.covered = isStart(d) || isMet(d, p, reach_);
+      reach_ = reach_.after(commandOf(index), now_, stages_);
+      p.waits.clear();
+      for (const size_t from : stages_)
+        for (const size_t to : stages_)
+          if (waits_[index][from][to] != 0) p.waits.push_back(waitOf(from, to, waits_[index][from][to]));
+      merge(p);
+    }
+  }
+
+  template <typename T, typename Change>
+  void tryLess(uint32_t index, T& what, const Change& change) {
+    const T whole = what;
+    change(what);
+    if (what == whole) return;
+    // Nearly always it is this very pass that needs it.
+    if (isRight(index, reach_)) {
+      const bool right = follow(static_cast<uint32_t>(graph_.passes.size()));
+      if (!right) what = whole;
+      follow(index);
+      if (right) return;
+    }
+    what = whole;
   }
 
   /// An image that takes over memory has a barrier of its own, for all that it depends on.
@@ -215,7 +320,7 @@ class Placement {
       ImageStart less = start;
       const auto tryIt = [&] {
         const bool enough = std::all_of(p.dependencies.begin(), p.dependencies.end(), [&](const Dependency& d) {
-          return d.resource != less.resource || !isStart(d) || isMet(d, less);
+          return d.resource != less.resource || !isStart(d) || isMet(d, less, reach_);
         });
         (enough ? start : less) = enough ? less : start;
       };
@@ -228,20 +333,26 @@ class Placement {
     }
   }
 
+  /// What a barrier has to come after.
+  Time used(const Dependency& d) const {
+    const Time at = time(d.pass, d.framesBack);
+    return farthest_ < now_ ? std::max(at, now_ - farthest_) : at;
+  }
+
   bool isStart(const Dependency& d) const {
     const Resource& r = graph_.resources[d.resource];
     return d.hazard != Hazard::ReadAfterWrite && r.shares && r.isImage();
   }
 
   /// Whether the image's barrier comes after it: from the stages of the use itself, or by a chain.
-  bool isMet(const Dependency& d, const ImageStart& start) const {
-    const Time used = time(d.pass, d.framesBack);
+  bool isMet(const Dependency& d, const ImageStart& start, const Reach& reach) const {
+    const Time used = this->used(d);
     const bool wrote = d.hazard == Hazard::WriteAfterWrite;
-    for (size_t stage = 0; stage < kStages.size(); ++stage) {
+    for (const size_t stage : stages_) {
       if (!has(graph_.passes[d.pass].stages, stage)) continue;
       bool met = has(start.from, stage) && (start.writes || !wrote);
-      for (size_t via = 0; via < kStages.size(); ++via) {
-        const Reach::Times& t = reach_.of[stage][via];
+      for (const size_t via : stages_) {
+        const Reach::Times& t = reach.of[stage][via];
         met |= has(start.from, via) && (wrote ? t.available : t.order) > used;
       }
       if (!met) return false;
@@ -250,39 +361,38 @@ class Placement {
   }
 
   bool isMet(const Dependency& d, const Reach::Times& t) const {
-    const Time used = time(d.pass, d.framesBack);
+    const Time used = this->used(d);
     if (d.hazard == Hazard::WriteAfterRead) return t.order > used;
     return (d.hazard == Hazard::ReadAfterWrite ? t.reads : t.writes) > used;
   }
 
   bool isMet(const Dependency& d, const CompiledPass& p, const Reach& reach) const {
-    for (size_t from = 0; from < kStages.size(); ++from)
-      for (size_t to = 0; to < kStages.size(); ++to)
+    for (const size_t from : stages_)
+      for (const size_t to : stages_)
         if (has(graph_.passes[d.pass].stages, from) && has(p.stages, to) && !isMet(d, reach.of[from][to])) return false;
     return true;
   }
 
-  void add(Command& command, const Dependency& d, const CompiledPass& p, Time now) const {
-    const Reach reach = reach_.after(command, now);
+  void add(Command& command, const Dependency& d, const CompiledPass& p) const {
+    const Reach reach = reach_.after(command, now_, stages_);
     uint8_t does = kOrders;
     if (d.hazard == Hazard::ReadAfterWrite) does |= kMakesAvailable | kToReads;
     if (d.hazard == Hazard::WriteAfterWrite) does |= kMakesAvailable | kToWrites;
-    for (size_t from = 0; from < kStages.size(); ++from)
-      for (size_t to = 0; to < kStages.size(); ++to)
+    for (const size_t from : stages_)
+      for (const size_t to : stages_)
         if (has(graph_.passes[d.pass].stages, from) && has(p.stages, to) && !isMet(d, reach.of[from][to]))
           command[from][to] |= does;
   }
 
   /// Takes away what the rest does without: first whole pairs of stages, then single effects.
-  void reduce(Command& command, const Command& starts, const CompiledPass& p, Time now) const {
-    constexpr uint8_t kAll = kOrders | kMakesAvailable | kToReads | kToWrites;
-    for (const uint8_t effect : {uint8_t{kAll}, uint8_t{kToReads}, uint8_t{kToWrites}, uint8_t{kMakesAvailable}})
-      for (size_t from = 0; from < kStages.size(); ++from)
-        for (size_t to = 0; to < kStages.size(); ++to) {
+  void reduce(Command& command, const Command& starts, const CompiledPass& p) const {
+    for (const uint8_t effect : kLosses)
+      for (const size_t from : stages_)
+        for (const size_t to : stages_) {
           const uint8_t whole = command[from][to];
           command[from][to] = static_cast<uint8_t>((whole & ~effect) | starts[from][to]);
           if (command[from][to] == whole) continue;
-          const Reach reach = reach_.after(command, now);
+          const Reach reach = reach_.after(command, now_, stages_);
           if (!std::all_of(p.dependencies.begin(), p.dependencies.end(),
                            [&](const Dependency& d) { return d.covered || isMet(d, p, reach); }))
             command[from][to] = whole;
@@ -314,7 +424,10 @@ class Placement {
   }
 
   CompiledGraph& graph_;
-  Time passes_, frame_ = 0;
+  Time passes_, frame_ = 0, now_ = 0;
+  Time farthest_ = 0;  ///< to look back
+  std::vector<size_t> stages_;  ///< that the graph has any work in
+  std::vector<Command> waits_;  ///< by pass
   Reach reach_;
 };
 
@@ -327,17 +440,7 @@ void planBarriers(CompiledGraph& graph) {
     graph.passes[p].waits.clear();
     graph.passes[p].starts.clear();
   }
-  // What stands in a frame depends on what stood in the one before. It settles after a frame or two; should it ever
-  // not, a frame that trusts only its own barriers is right as well.
-  Placement placement(graph);
-  constexpr int kTries = 8;
-  // Dependencies reach two frames back, so that three have to be alike.
-  for (int i = 0, alike = 0; i < kTries; ++i) {
-    alike = placement.frame() ? alike + 1 : 0;
-    if (alike == 2) return;
-  }
-  placement.forget();
-  placement.frame();
+  Placement(graph).plan();
 }
 
 }  // namespace weir::graph
