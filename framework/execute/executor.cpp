@@ -176,7 +176,9 @@ uint64_t Executor::transientBytes() const {
 }
 
 uint64_t Executor::savedBytes() const {
-  return graph().separateBytes() - transientBytes();
+  // Alignment can cost a little more than sharing saves.
+  const uint64_t separate = graph().separateBytes(), taken = transientBytes();
+  return separate > taken ? separate - taken : 0;
 }
 
 }  // namespace weir::execute

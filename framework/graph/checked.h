@@ -90,4 +90,7 @@ Order orderPasses(const Checked& checked);
 void plan(const Checked& checked, const Order& order, const CompileOptions& options, CompiledGraph& graph,
           Findings& findings);
 
+/// The first half of planBarriers: fills in every pass's dependencies.
+void listDependencies(CompiledGraph& graph);
+
 }  // namespace weir::graph

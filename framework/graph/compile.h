@@ -79,6 +79,7 @@ struct ImageStart {
   uint32_t resource = kNone;
   Stages from = 0;      ///< who had the memory
   bool writes = false;  ///< some of them wrote without anybody reading
+  bool operator==(const ImageStart&) const = default;
 };
 
 struct CompiledPass {

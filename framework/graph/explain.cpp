@@ -149,7 +149,8 @@ class Explainer {
       say("  {:<26} {:<36} {:>12} {:>10}  {}  {}\n", r.name, typeText(r.type), extentText(r), bytesText(r.bytes), life,
           placeText(r));
     }
-    const uint64_t shared = graph_.sharedBytes(), separate = graph_.separateBytes();
+    // Alignment can cost a little more than sharing saves.
+    const uint64_t shared = graph_.sharedBytes(), separate = std::max(graph_.separateBytes(), shared);
     if (graph_.blocks.empty()) {
       say("  {} in memory of their own, {} in two copies for history\n", bytesText(separate),
           bytesText(graph_.historyBytes()));

@@ -1,5 +1,4 @@
-// Sizes, element counts, lifetimes and barriers on graphs small enough to work out by hand; and what people read of
-// them.
+// Sizes, element counts and order on graphs small enough to work out by hand; and what people read of them.
 #include "fakes.h"
 
 #include <gtest/gtest.h>
@@ -9,26 +8,6 @@ namespace {
 
 std::string graphOf(const std::string& passes, const std::string& outputs) {
   return "{\"version\": 1, \"name\": \"small\", \"passes\": {\n" + passes + "\n}, \"outputs\": {" + outputs + "}}";
-}
-
-struct Expected {
-  std::string resource;
-  bool previous;
-  Access before, after;
-  std::string from;  ///< empty: an earlier frame
-};
-
-void expectBarriers(const Result& r, const std::string& pass, const std::vector<Expected>& expected) {
-  const std::vector<Barrier>& barriers = r.pass(pass).barriers;
-  ASSERT_EQ(barriers.size(), expected.size()) << pass << "\n" << explain(r.graph);
-  for (size_t i = 0; i < expected.size(); ++i) {
-    const Barrier& b = barriers[i];
-    EXPECT_EQ(r.graph.resources[b.resource].name, expected[i].resource) << pass;
-    EXPECT_EQ(b.previous, expected[i].previous) << pass;
-    EXPECT_EQ(b.before, expected[i].before) << pass << " " << expected[i].resource;
-    EXPECT_EQ(b.after, expected[i].after) << pass;
-    EXPECT_EQ(b.fromPass == kNone ? "" : r.graph.passes[b.fromPass].name, expected[i].from) << pass;
-  }
 }
 
 class Plan : public ::testing::Test {
@@ -171,48 +150,6 @@ TEST_F(Plan, StreamsDependOnTheNameOnly) {
   EXPECT_NE(r.pass("a").stream, r.pass("b").stream);
 }
 
-TEST_F(Plan, OnlyTheFirstReaderWaits) {
-  const Result r =
-      run(graphOf("\"s\": {\"type\": \"t.Source\"}, \"f\": {\"type\": \"t.Filter\", \"inputs\": {\"i\": \"s.o\"}},\n"
-                  "\"g\": {\"type\": \"t.Filter\", \"inputs\": {\"i\": \"s.o\"}},\n"
-                  "\"m\": {\"type\": \"t.Mix\", \"inputs\": {\"a\": \"f.o\", \"b\": \"g.o\"}}",
-                  "\"x\": \"m.o\""),
-          fakes);
-  using enum Access;
-  expectBarriers(r, "s", {{"s.o", false, Read, Write, ""}});
-  expectBarriers(r, "f", {{"s.o", false, Write, Read, "s"}, {"f.o", false, Read, Write, ""}});
-  expectBarriers(r, "g", {{"g.o", false, Read, Write, ""}});
-  expectBarriers(
-      r, "m", {{"f.o", false, Write, Read, "f"}, {"g.o", false, Write, Read, "g"}, {"m.o", false, Write, Write, ""}});
-}
-
-TEST_F(Plan, TheSameInputTwiceIsOneBarrierAndAnUnreadOutputWaitsForItsOwnWrite) {
-  fakes.add("t.Two").output("o", storageImage(Format::R32F));
-  fakes.add("t.Two").output("unread", storageImage(Format::R32F));
-  const Result r = run(
-      graphOf(
-          "\"s\": {\"type\": \"t.Two\"}, \"m\": {\"type\": \"t.Mix\", \"inputs\": {\"a\": \"s.o\", \"b\": \"s.o\"}}",
-          "\"x\": \"m.o\""),
-      fakes);
-  using enum Access;
-  expectBarriers(r, "s", {{"s.o", false, Read, Write, ""}, {"s.unread", false, Write, Write, ""}});
-  expectBarriers(r, "m", {{"s.o", false, Write, Read, "s"}, {"m.o", false, Write, Write, ""}});
-}
-
-TEST_F(Plan, History) {
-  // m reads its own last frame and s; f reads m of both frames.
-  const Result r = run(graphOf("\"s\": {\"type\": \"t.Source\"},\n"
-                               "\"m\": {\"type\": \"t.Mix\", \"inputs\": {\"a\": \"s.o\", \"b\": \"m.o@previous\"}},\n"
-                               "\"n\": {\"type\": \"t.Mix\", \"inputs\": {\"a\": \"m.o\", \"b\": \"m.o@previous\"}}",
-                               "\"x\": \"n.o\""),
-                       fakes);
-  using enum Access;
-  EXPECT_TRUE(r.resource("m.o").history);
-  expectBarriers(r, "m",
-                 {{"s.o", false, Write, Read, "s"}, {"m.o", true, Write, Read, ""}, {"m.o", false, Read, Write, ""}});
-  expectBarriers(r, "n", {{"m.o", false, Write, Read, "m"}, {"n.o", false, Write, Write, ""}});
-}
-
 TEST_F(Plan, ExplainAndDotSayWhatTheyShould) {
   const Fakes example = exampleFakes();
   const Result r = run(readFixture("restir_di.json"), example, {{}, {}, {"spatial"}}, 1920, 1080);
@@ -220,9 +157,11 @@ TEST_F(Plan, ExplainAndDotSayWhatTheyShould) {
   for (const char* words :
        {"Graph 'restir-di' at 1920x1080 (graph.json)", "  1. gbuffer (gbuffer.RayTraced)",
         "surface <- gbuffer.surface\n", "previousSurface <- gbuffer.surface@previous", "mis = balance",
-        "until what gbuffer wrote to gbuffer.surface can be read",
+        "wait until gbuffer.surface can be read, which gbuffer wrote\n",
         "spatial: it is disabled; temporal.reservoirs stands for its 'reservoirs'", "radiance <- shade.color",
-        "always: history", "scene.geometry", "temporal.previousSurface next frame"})
+        "two copies of its own: history", "barrier compute writes -> compute reads\n",
+        "wait for 6 more: earlier barriers see to it\n", "16.6 MB  ###..  at 99.5 MB\n", "Most alive at once",
+        "scene.geometry", "temporal.previousSurface next frame"})
     EXPECT_NE(text.find(words), std::string::npos) << words << "\nis missing in\n" << text;
   const std::string picture = dot(r.graph);
   for (const char* words :
