@@ -9,19 +9,23 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 
 namespace {
 
 using weir::graph::CompiledGraph;
 
-void addOne(CLI::App& parent, const char* name, const char* help,
+/// `gap` stands between the answers for several graphs.
+void addOne(CLI::App& parent, const char* name, const char* help, const char* gap,
             std::function<std::string(const CompiledGraph&)> print) {
   auto options = std::make_shared<GraphOptions>();
   CLI::App* command = parent.add_subcommand(name, help);
   addGraphOptions(*command, *options);
-  command->callback([options, print = std::move(print)] {
+  command->callback([options, gap, print = std::move(print)] {
     weir::Registry registry(weir::pluginSearchPath(options->pluginPath));
-    fmt::print("{}", print(options->compile(registry)));
+    const char* between = "";
+    for (const CompiledGraph& compiled : options->compile(registry))
+      fmt::print("{}{}", std::exchange(between, gap), print(compiled));
   });
 }
 
@@ -50,8 +54,9 @@ void addSchema(CLI::App& parent) {
 void addGraphCommand(CLI::App& app) {
   CLI::App* graph = app.add_subcommand("graph", "check a graph and say what it does, without rendering");
   graph->require_subcommand(1);
-  addOne(*graph, "check", "report everything that is wrong with a graph", checked);
-  addOne(*graph, "explain", "order, resources, barriers, history and skipped passes", weir::graph::explain);
-  addOne(*graph, "dot", "the graph in Graphviz's language", weir::graph::dot);
+  addOne(*graph, "check", "report everything that is wrong with a graph", "", checked);
+  addOne(*graph, "explain", "order, barriers, lives and memory of resources, history and skipped passes", "\n\n",
+         weir::graph::explain);
+  addOne(*graph, "dot", "the graph in Graphviz's language", "", weir::graph::dot);
   addSchema(*graph);
 }

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <charconv>
+#include <utility>
 
 void GraphOptions::parseSize(uint32_t& width, uint32_t& height) const {
   const char *begin = size.data(), *end = begin + size.size();
@@ -17,10 +18,20 @@ void GraphOptions::parseSize(uint32_t& width, uint32_t& height) const {
   throw weir::InputError(fmt::format("--size: '{}' is no size; expected WxH, as 1280x720", size));
 }
 
-weir::graph::CompiledGraph GraphOptions::compile(weir::Registry& registry) const {
+std::vector<weir::graph::CompiledGraph> GraphOptions::compile(weir::Registry& registry) const {
   uint32_t width = 0, height = 0;
   parseSize(width, height);
-  return weir::graph::compileFile(file, overrides, registry.catalog(), width, height);
+  std::vector<weir::graph::CompiledGraph> graphs;
+  std::vector<weir::graph::Diagnostic> findings;
+  for (const std::string& file : files) {
+    try {
+      graphs.push_back(weir::graph::compileFile(file, overrides, registry.catalog(), width, height));
+    } catch (const weir::graph::GraphError& error) {
+      findings.insert(findings.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  }
+  if (!findings.empty()) throw weir::graph::GraphError(std::move(findings));
+  return graphs;
 }
 
 void addPluginPath(CLI::App& command, std::vector<std::string>& pluginPath) {
@@ -33,7 +44,7 @@ void addPluginPath(CLI::App& command, std::vector<std::string>& pluginPath) {
 }
 
 void addGraphOptions(CLI::App& command, GraphOptions& options) {
-  command.add_option("GRAPH", options.file, "the graph's JSON file")->required();
+  command.add_option("GRAPH", options.files, "the graph's JSON file; may be several")->required();
   command.add_option("--set", options.overrides.set, "change a parameter: pass.param=value; may be repeated")
       ->type_name("PASS.PARAM=VALUE")
       ->allow_extra_args(false);

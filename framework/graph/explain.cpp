@@ -23,7 +23,9 @@ class Explainer {
   std::string explain() {
     say("Graph '{}' at {}x{}{}\n", graph_.name, graph_.width, graph_.height,
         graph_.file.empty() ? "" : " (" + graph_.file + ")");
-    say("\nOrder of the passes in a frame\n");
+    say("\nOrder of the passes in a frame. in: what it reads; out: who reads what it writes; own: scratch memory; "
+        "wait: what has\n"
+        "to be over before it runs; barrier: what is recorded for that, stages before -> stages after.\n");
     for (uint32_t p = 0; p < graph_.passes.size(); ++p) pass(p);
     resources();
     outputs();

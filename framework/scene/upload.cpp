@@ -174,12 +174,12 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
   }
   std::array<VkDescriptorBufferInfo, handles.size()> buffers{};
   std::vector<VkWriteDescriptorSet> writes;
-  auto write = [&](uint32_t binding, VkDescriptorType type, uint32_t count) -> VkWriteDescriptorSet& {
+  auto write = [&](uint32_t binding, VkDescriptorType type, uint32_t many) -> VkWriteDescriptorSet& {
     VkWriteDescriptorSet w{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     w.dstSet = set;
     w.dstBinding = binding;
     w.descriptorType = type;
-    w.descriptorCount = count;
+    w.descriptorCount = many;
     writes.push_back(w);
     return writes.back();
   };
