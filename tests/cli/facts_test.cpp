@@ -21,14 +21,14 @@ TEST_F(Program, GraphsOfTheHouseAreSound) {
 }
 
 TEST_F(Program, SeveralGraphsAtOnce) {
-  const std::string restir = sourcePath("graphs/restir_di.json"), all = sourcePath("graphs/all_lights.json");
-  const Ran good = weir("graph explain " + restir + " " + all);
+  const std::string one = sourcePath("graphs/restir_di.json"), all = sourcePath("graphs/all_lights.json");
+  const Ran good = weir("graph explain " + one + " " + all);
   EXPECT_EQ(good.status, 0) << good.err;
   EXPECT_TRUE(has(good.out, "Graph 'restir-di'") && has(good.out, "Graph 'all-lights'")) << good.out;
   const std::string broken =
       folder.write("broken.json", R"({"version": 1, "passes": {"a": {"type": "no.Such"}}, "outputs": {}})");
   const std::string worse = folder.write("worse.json", "{");
-  const Ran bad = weir("graph check " + restir + " " + broken + " " + worse);
+  const Ran bad = weir("graph check " + one + " " + broken + " " + worse);
   EXPECT_EQ(bad.status, 2);
   EXPECT_TRUE(has(bad.err, "broken.json") && has(bad.err, "worse.json")) << "the findings of all: " << bad.err;
 }
