@@ -135,7 +135,7 @@ void GraphRuntime::makeBarriers() {
       VkImageMemoryBarrier2& b =
           barriers_[p].images.emplace_back(toGeneral(resources_->at(s.resource, 0, false).image));
       b.srcStageMask = vulkanStages(s.from);
-      b.srcAccessMask = s.writes ? writeAccess(s.from) : 0;
+      b.srcAccessMask = writeAccess(s.from);  // of this image, a frame ago: in the chain that the waits make
       b.dstStageMask = vulkanStages(pass.stages);
       b.dstAccessMask = readAccess(pass.stages) | writeAccess(pass.stages);
     }

@@ -208,43 +208,23 @@ class Placement {
     CompiledPass& p = graph_.passes[index];
     now_ = time(index, 0);
     startImages(p);
-    const Command starts = startsOf(p);
-    for (Dependency& d : p.dependencies) d.covered = isStart(d) || isMet(d, p, reach_);
-    Command command = starts;
+    for (Dependency& d : p.dependencies) d.covered = isOfStart(d) || isMet(d, p, reach_);
+    Command& command = waits_[index];
+    command = {};
     for (const Dependency& d : p.dependencies)
       if (!d.covered) add(command, d, p);
-    if (command != starts) reduce(command, starts, p);
-    for (const size_t from : stages_)
-      for (const size_t to : stages_)
-        waits_[index][from][to] = command[from][to] == starts[from][to] ? uint8_t{0} : command[from][to];
+    if (command != Command{}) reduce(command, p);
     reach_ = reach_.after(command, now_, stages_);
-  }
-
-  /// What the barriers of starting images order is not their images alone.
-  Command startsOf(const CompiledPass& p) const {
-    Command starts{};
-    for (const ImageStart& s : p.starts)
-      for (const size_t from : stages_)
-        for (const size_t to : stages_)
-          if (has(s.from, from) && has(p.stages, to)) starts[from][to] = kOrders;
-    return starts;
-  }
-
-  Command commandOf(uint32_t index) const {
-    Command command = startsOf(graph_.passes[index]);
-    for (const size_t from : stages_)
-      for (const size_t to : stages_) command[from][to] |= waits_[index][from][to];
-    return command;
   }
 
   /// Whether all that a pass depends on is over when its barriers stand where `before` holds.
   bool isRight(uint32_t index, const Reach& before) const {
     const CompiledPass& p = graph_.passes[index];
-    const Reach after = before.after(commandOf(index), now_, stages_);
+    const Reach after = before.after(waits_[index], now_, stages_);
     for (const Dependency& d : p.dependencies) {
-      if (!isStart(d) && !isMet(d, p, after)) return false;
+      if (!isOfStart(d) && !isMet(d, p, after)) return false;
       for (const ImageStart& s : p.starts)
-        if (s.resource == d.resource && isStart(d) && !isMet(d, s, before)) return false;
+        if (!isMet(d, s, before)) return false;
     }
     return true;
   }
@@ -259,7 +239,7 @@ class Placement {
       frame_ = step / passes_;
       now_ = step;
       if (frame_ == kFourth && !isRight(p, reach_)) return false;
-      reach_ = reach_.after(commandOf(p), now_, stages_);
+      reach_ = reach_.after(waits_[p], now_, stages_);
     }
     frame_ = kFourth;
     now_ = time(end, 0);
@@ -273,17 +253,15 @@ class Placement {
     for (uint32_t index = 0; index < graph_.passes.size(); ++index) {
       CompiledPass& p = graph_.passes[index];
       now_ = time(index, 0);
-      for (ImageStart& start : p.starts) {
-        tryLess(index, start, [](ImageStart& s) { s.writes = false; });
+      for (ImageStart& start : p.starts)
         for (const Stages stage : kStages)
           tryLess(index, start, [&](ImageStart& s) { s.from &= static_cast<Stages>(~stage); });
-      }
       for (const size_t from : stages_)
         for (const size_t to : stages_)
           for (const uint8_t effect : kLosses)
             tryLess(index, waits_[index][from][to], [&](uint8_t& d) { d = static_cast<uint8_t>(d & ~effect); });
-      for (Dependency& d : p.dependencies) d.covered = isStart(d) || isMet(d, p, reach_);
-      reach_ = reach_.after(commandOf(index), now_, stages_);
+      for (Dependency& d : p.dependencies) d.covered = isOfStart(d) || isMet(d, p, reach_);
+      reach_ = reach_.after(waits_[index], now_, stages_);
       p.waits.clear();
       for (const size_t from : stages_)
         for (const size_t to : stages_)
@@ -307,30 +285,24 @@ class Placement {
     what = whole;
   }
 
-  /// An image that takes over memory has a barrier of its own, for all that it depends on.
+  /// An image that takes over memory has a barrier of its own, which orders it after all that had the memory. That is
+  /// all it does: what its stages order beyond the image the validation layers don't see, and what others wrote there
+  /// they didn't write through this image, so that making it available takes a barrier for all memory.
   void startImages(CompiledPass& p) const {
     p.starts.clear();
     for (const Dependency& d : p.dependencies) {
-      if (!isStart(d)) continue;
+      if (!isStarted(d)) continue;
       if (p.starts.empty() || p.starts.back().resource != d.resource) p.starts.push_back({d.resource});
       p.starts.back().from |= graph_.passes[d.pass].stages;
-      p.starts.back().writes |= d.hazard == Hazard::WriteAfterWrite;
     }
-    for (ImageStart& start : p.starts) {
-      ImageStart less = start;
-      const auto tryIt = [&] {
-        const bool enough = std::all_of(p.dependencies.begin(), p.dependencies.end(), [&](const Dependency& d) {
-          return d.resource != less.resource || !isStart(d) || isMet(d, less, reach_);
-        });
-        (enough ? start : less) = enough ? less : start;
-      };
-      less.writes = false;
-      tryIt();
+    for (ImageStart& start : p.starts)
       for (const Stages stage : kStages) {
+        ImageStart less = start;
         less.from &= static_cast<Stages>(~stage);
-        tryIt();
+        if (std::all_of(p.dependencies.begin(), p.dependencies.end(),
+                        [&](const Dependency& d) { return isMet(d, less, reach_); }))
+          start = less;
       }
-    }
   }
 
   /// What a barrier has to come after.
@@ -339,23 +311,23 @@ class Placement {
     return farthest_ < now_ ? std::max(at, now_ - farthest_) : at;
   }
 
-  bool isStart(const Dependency& d) const {
+  /// Whether it is of an image that starts.
+  bool isStarted(const Dependency& d) const {
     const Resource& r = graph_.resources[d.resource];
     return d.hazard != Hazard::ReadAfterWrite && r.shares && r.isImage();
   }
+  /// Whether the image's own barrier is enough for it.
+  bool isOfStart(const Dependency& d) const { return d.hazard == Hazard::WriteAfterRead && isStarted(d); }
 
-  /// Whether the image's barrier comes after it: from the stages of the use itself, or by a chain.
+  /// Whether the image's barrier, if it is this one's, comes after it: from the stages of the use itself, or by a chain.
   bool isMet(const Dependency& d, const ImageStart& start, const Reach& reach) const {
+    if (d.resource != start.resource || !isStarted(d)) return true;
     const Time used = this->used(d);
-    const bool wrote = d.hazard == Hazard::WriteAfterWrite;
     for (const size_t stage : stages_) {
-      if (!has(graph_.passes[d.pass].stages, stage)) continue;
-      bool met = has(start.from, stage) && (start.writes || !wrote);
-      for (const size_t via : stages_) {
-        const Reach::Times& t = reach.of[stage][via];
-        met |= has(start.from, via) && (wrote ? t.available : t.order) > used;
-      }
-      if (!met) return false;
+      if (!has(graph_.passes[d.pass].stages, stage) || has(start.from, stage)) continue;
+      if (std::none_of(stages_.begin(), stages_.end(),
+                       [&](size_t via) { return has(start.from, via) && reach.of[stage][via].order > used; }))
+        return false;
     }
     return true;
   }
@@ -385,12 +357,12 @@ class Placement {
   }
 
   /// Takes away what the rest does without: first whole pairs of stages, then single effects.
-  void reduce(Command& command, const Command& starts, const CompiledPass& p) const {
+  void reduce(Command& command, const CompiledPass& p) const {
     for (const uint8_t effect : kLosses)
       for (const size_t from : stages_)
         for (const size_t to : stages_) {
           const uint8_t whole = command[from][to];
-          command[from][to] = static_cast<uint8_t>((whole & ~effect) | starts[from][to]);
+          command[from][to] = static_cast<uint8_t>(whole & ~effect);
           if (command[from][to] == whole) continue;
           const Reach reach = reach_.after(command, now_, stages_);
           if (!std::all_of(p.dependencies.begin(), p.dependencies.end(),

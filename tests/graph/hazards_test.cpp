@@ -79,11 +79,6 @@ void forEachLoss(CompiledGraph& graph, const Check& check) {
       pass.starts.erase(pass.starts.begin() + static_cast<std::ptrdiff_t>(i));
       check(fmt::format("{}: start {}", pass.name, i + 1));
       pass.starts = starts;
-      if (starts[i].writes) {
-        pass.starts[i].writes = false;
-        check(fmt::format("{}: writes of start {}", pass.name, i + 1));
-        pass.starts = starts;
-      }
       for (const Stages bit : {kComputeStage, kRayStage, kRasterStage}) {
         if ((starts[i].from & bit) == 0) continue;
         pass.starts[i].from &= static_cast<Stages>(~bit);

@@ -91,19 +91,17 @@ class MemoryModel {
 
   // ------------------------------------------------------------------------------------------------ barriers
 
-  /// All barriers before a pass are one command: none of them chains with another.
+  /// All barriers before a pass are one command: none of them chains with another, but images change their layout only
+  /// after what it makes available. An image's barrier is trusted with that image alone, as the validation layers do.
   void barriers(const CompiledPass& pass) {
     std::vector<size_t> transitions;
     for (const ImageStart& s : pass.starts)
       for (const size_t place : piecesOf(s.resource, frame_)) {
         const Piece& piece = pieces_[place];
         const std::string who = graph_.resources[s.resource].name + "'s start";
-        for (const Access& a : piece.reads)
-          if (!holds(s.from, a.stage, a.ordered)) blame(who, piece, "may still be read");
-        for (const Access& a : piece.write)
-          if (!(piece.reads.empty() ? (s.writes && (a.stage & s.from) != 0) || (a.available & s.from) != 0
-                                    : holds(s.from, a.stage, a.ordered)))
-            blame(who, piece, "may still be written");
+        for (const std::vector<Access>* list : {&piece.write, &piece.reads})
+          for (const Access& a : *list)
+            if (!holds(s.from, a.stage, a.ordered)) blame(who, piece, "may still be in use");
         transitions.push_back(place);
       }
     for (Piece& piece : pieces_)
@@ -111,13 +109,14 @@ class MemoryModel {
         for (Access& a : *list) {
           Access after = a;
           for (const Wait& w : pass.waits) waitFor(w, a, after);
-          for (const ImageStart& s : pass.starts) {  // what it orders is not the image alone
-            if (holds(s.from, a.stage, a.ordered)) after.ordered |= pass.stages;
-            if ((a.available & s.from) != 0) after.available |= pass.stages;
-          }
           a = after;
         }
-    for (const size_t place : transitions) pieces_[place] = {kUndefined, frame_, {}, {}};
+    for (const size_t place : transitions) {
+      Piece& piece = pieces_[place];
+      for (const Access& a : piece.write)
+        if (piece.reads.empty() && (pass.stages & ~a.writable) != 0) blame("a start", piece, "may still be written");
+      piece = {kUndefined, frame_, {}, {}};
+    }
   }
 
   static bool holds(Stages from, Stages stage, Stages ordered) { return ((stage | ordered) & from) != 0; }
