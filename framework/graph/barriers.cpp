@@ -12,8 +12,8 @@
 // pass A to pass B is an interval of time, a barrier a point in it, and the fewest barriers are the fewest points that
 // every interval contains one of: going through the frame, one is placed where an interval ends that has none yet.
 //
-// Two things that Vulkan has are left alone, as the validation layers don't see them: chains of barriers by way of other
-// stages, and what an image's own barrier orders beyond that image.
+// Two things that Vulkan has are left alone, as the validation layers don't see them: chains of barriers by way of
+// other stages, and what an image's own barrier orders beyond that image.
 #include <weir/graph/checked.h>
 
 #include <algorithm>
@@ -309,7 +309,7 @@ class Placement {
 
   CompiledGraph& graph_;
   Time passes_, frame_ = 0, now_ = 0;
-  std::vector<size_t> stages_;  ///< that the graph has any work in
+  std::vector<size_t> stages_;     ///< that the graph has any work in
   std::vector<Command> commands_;  ///< by pass
   ByStages<Last> last_{};
 };
@@ -318,9 +318,7 @@ class Placement {
 
 void planBarriers(CompiledGraph& graph) {
   Hazards hazards(graph);
-  for (uint32_t p = 0; p < graph.passes.size(); ++p) {
-    hazards.list(p);
-  }
+  for (uint32_t p = 0; p < graph.passes.size(); ++p) hazards.list(p);
   Placement(graph).plan();
 }
 

@@ -73,15 +73,14 @@ struct PatternType {
   Work work = Compute;
 };
 inline const std::vector<PatternType>& patternTypes() {
-  static const std::vector<PatternType> kTypes = {
-      {"Images", {}, {"u", "f", "c"}},
-      {"Buffers", {}, {"w", "m"}},
-      {"Two", {"u0", "w0"}, {"u", "f"}},
-      {"Mix", {"f0", "w0", "w1"}, {"w", "c"}},
-      {"Halves", {"m0", "w0"}, {"m", "u"}, PatternType::Halves},
-      {"Wide", {"u0", "u1", "c0"}, {"c", "w", "m"}},
-      {"Rays", {"w0", "f0"}, {"u", "m"}, PatternType::Rays},
-      {"Raster", {"u0"}, {"w", "f"}, PatternType::Raster}};
+  static const std::vector<PatternType> kTypes = {{"Images", {}, {"u", "f", "c"}},
+                                                  {"Buffers", {}, {"w", "m"}},
+                                                  {"Two", {"u0", "w0"}, {"u", "f"}},
+                                                  {"Mix", {"f0", "w0", "w1"}, {"w", "c"}},
+                                                  {"Halves", {"m0", "w0"}, {"m", "u"}, PatternType::Halves},
+                                                  {"Wide", {"u0", "u1", "c0"}, {"c", "w", "m"}},
+                                                  {"Rays", {"w0", "f0"}, {"u", "m"}, PatternType::Rays},
+                                                  {"Raster", {"u0"}, {"w", "f"}, PatternType::Raster}};
   return kTypes;
 }
 
@@ -136,7 +135,8 @@ class Pattern final : public Pass {
 inline std::vector<WeirPassEntry> patternEntries() {
   return [&]<size_t... kTypes>(std::index_sequence<kTypes...>) {
     return std::vector<WeirPassEntry>{passEntry<Pattern<kTypes>>(patternTypes()[kTypes].name)...};
-  }(std::make_index_sequence<8>());
+  }
+  (std::make_index_sequence<8>());
 }
 
 /// What the device can do; other types are left out.
@@ -187,7 +187,8 @@ inline std::string randomPatternGraph(std::mt19937& random, const PatternTypes& 
                         below(12) == 0 ? ", \"enabled\": false" : "");
   }
   std::string outputs;
-  for (size_t o = 0; o <= below(3); ++o) outputs += fmt::format("{}\"o{}\": \"{}\"", o ? ", " : "", o, source(0, passes, false));
+  for (size_t o = 0; o <= below(3); ++o)
+    outputs += fmt::format("{}\"o{}\": \"{}\"", o ? ", " : "", o, source(0, passes, false));
   for (size_t i = 2; i < passes; ++i)  // so that most of them run
     if (below(4) > 0) outputs += fmt::format(", \"f{}\": \"{}.faults\"", i, nodes[i].name);
   return "{\"version\": 1, \"name\": \"random\", \"passes\": {" + text + "}, \"outputs\": {" + outputs + "}}";
@@ -243,7 +244,8 @@ class PatternMachine {
       execute::ExecutorOptions options;
       options.backend = trace::chooseBackend("auto", *device_);
       options.poison = poison_;
-      executor_ = std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(graph), options);
+      executor_ =
+          std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(graph), options);
     }
     next_ = {};
   }

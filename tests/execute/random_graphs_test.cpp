@@ -34,7 +34,8 @@ uint64_t wrongInOutputs(PatternMachine& machine) {
     const graph::CompiledPass& pass = graph.passes[r.producer];
     for (const graph::Binding& b : pass.outputs) {
       if (b.resource != output.resource || b.port == "faults") continue;
-      const uint32_t key = patternKey(std::get<int32_t>(pass.params.at("salt")), static_cast<uint32_t>(patternKind(b.port)));
+      const uint32_t key =
+          patternKey(std::get<int32_t>(pass.params.at("salt")), static_cast<uint32_t>(patternKind(b.port)));
       const std::vector<uint32_t> words = machine.read<uint32_t>(r.name);
       for (uint32_t i = 0; i < words.size(); ++i) {
         const uint32_t value = patternValue(key, machine.frame(), i);
@@ -66,7 +67,9 @@ TEST_P(RandomGraphsRun, EveryElementIsWhatItsProducerWrote) {
     machine.load(std::move(*graph));
     machine.run(kFrames);
     const Faults faults = machine.faults();
-    ASSERT_EQ(faults.wrong, 0u) << "of " << faults.checked << ", graph " << done << "\n" << json << "\n" << explain(machine.graph());
+    ASSERT_EQ(faults.wrong, 0u) << "of " << faults.checked << ", graph " << done << "\n"
+                                << json << "\n"
+                                << explain(machine.graph());
     ASSERT_EQ(faults.checked, kFrames * checksOf(machine.graph())) << json;
     ASSERT_EQ(wrongInOutputs(machine), 0u) << json << "\n" << explain(machine.graph());
     checked += faults.checked;
@@ -77,9 +80,10 @@ TEST_P(RandomGraphsRun, EveryElementIsWhatItsProducerWrote) {
       history += r.history ? 1 : 0;
     }
   }
-  std::cout << fmt::format("{} elements checked in {} graphs, {} resources shared memory, {} images started, {} had "
-                           "history, {} graphs with skipped passes, {} graphs refused, {} pipelines\n",
-                           checked, kGraphs, shared, starts, history, skipped, refused, machine.executor().pipelinesMade());
+  std::cout << fmt::format(
+      "{} elements checked in {} graphs, {} resources shared memory, {} images started, {} had "
+      "history, {} graphs with skipped passes, {} graphs refused, {} pipelines\n",
+      checked, kGraphs, shared, starts, history, skipped, refused, machine.executor().pipelinesMade());
   EXPECT_GT(checked, 1'000'000u);
   EXPECT_GT(shared, 2500u);
   EXPECT_GT(starts, 2500u);

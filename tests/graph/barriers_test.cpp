@@ -36,9 +36,9 @@ class Barriers : public ::testing::Test {
   }
 
   Result compiled(const std::string& passes, const std::string& output) {
-    Result r = run("{\"version\": 1, \"name\": \"small\", \"passes\": {" + passes + "}, \"outputs\": {\"x\": \"" +
-                       output + "\"}}",
-                   fakes);
+    Result r = run(
+        "{\"version\": 1, \"name\": \"small\", \"passes\": {" + passes + "}, \"outputs\": {\"x\": \"" + output + "\"}}",
+        fakes);
     EXPECT_EQ(r.text(), "");
     return r;
   }
@@ -105,7 +105,6 @@ TEST_F(Barriers, TheSameInputTwiceIsOneBarrierAndAnUnreadOutputWaitsForItsOwnWri
   expectWaits(r, "s", {kRewrites});
   expectWaits(r, "m", {kReads});
 }
-
 
 TEST_F(Barriers, HistoryCostsNoneOfItsOwn) {
   // m reads its own last frame; n reads m of both frames.
@@ -193,7 +192,8 @@ TEST_F(Barriers, WhatWasNeverReadIsMadeAvailableBeforeAnImageStartsThere) {
        {"1. s (t.RaysTwo), rays\n", "2. f (t.Filter), compute\n", "wait until s.o can be read, which s wrote\n",
         "wait until f is done writing f.o in the last frame, whose memory s.unread takes over\n",
         "barrier compute writes -> rays writes\n", "barrier compute -> rays: s.unread starts undefined\n",
-        "barrier rays writes -> compute reads writes\n", "barrier rays -> compute: f.o starts undefined\n", "at 8192 B, shared; output"})
+        "barrier rays writes -> compute reads writes\n", "barrier rays -> compute: f.o starts undefined\n",
+        "at 8192 B, shared; output"})
     EXPECT_NE(text.find(words), std::string::npos) << words << "\nis missing in\n" << text;
 }
 

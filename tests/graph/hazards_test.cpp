@@ -100,7 +100,8 @@ TEST(Hazards, EveryBarrierAndEveryBitOfOneIsNeeded) {
       ++losses;
       if (!faultOf(graph).empty()) return;
       ++spare;
-      if (spare < 4) ADD_FAILURE() << "graph " << i << ", nobody misses " << what << "\n" << random.json << "\n" << plan;
+      if (spare < 4)
+        ADD_FAILURE() << "graph " << i << ", nobody misses " << what << "\n" << random.json << "\n" << plan;
     });
   }
   EXPECT_EQ(spare, 0) << "of " << losses;
@@ -164,7 +165,9 @@ TEST(Hazards, ALifetimeThatIsTooShortIsSeen) {
     planBarriers(graph);
     // Only where it makes a difference to the places.
     const bool wrong = livesTogetherAndShares(graph, lives);
-    ASSERT_EQ(!faultOf(graph).empty(), wrong) << faultOf(graph) << "\n" << r.name << "\n" << random.json << explain(graph);
+    ASSERT_EQ(!faultOf(graph).empty(), wrong) << faultOf(graph) << "\n"
+                                              << r.name << "\n"
+                                              << random.json << explain(graph);
     seen += wrong ? 1 : 0;
   }
   EXPECT_GT(seen, 300);

@@ -138,8 +138,7 @@ class MemoryModel {
       for (const Access& a : piece.reads)
         if ((pass.stages & ~a.ordered) != 0) blame(pass.name, piece, "may still be read");
       for (const Access& a : piece.write)
-        if (piece.reads.empty() && (pass.stages & ~a.writable) != 0)
-          blame(pass.name, piece, "may still be written");
+        if (piece.reads.empty() && (pass.stages & ~a.writable) != 0) blame(pass.name, piece, "may still be written");
       const bool foreign = piece.resource != kUndefined && piece.resource != static_cast<int>(resource);
       if (graph_.resources[resource].isImage() && foreign) blame(pass.name, piece, "was no image in its layout");
       piece = {static_cast<int>(resource), frame_, {}, {}};
@@ -173,7 +172,8 @@ class MemoryModel {
   std::string nameOf(uint32_t resource, int frame) const { return nameOf(static_cast<int>(resource), frame); }
 
   void blame(const std::string& who, const Piece& piece, const std::string& what) {
-    if (fault_.empty()) fault_ = fmt::format("frame {}, {}: {} {}", frame_, who, nameOf(piece.resource, piece.frame), what);
+    if (fault_.empty())
+      fault_ = fmt::format("frame {}, {}: {} {}", frame_, who, nameOf(piece.resource, piece.frame), what);
   }
 
   const CompiledGraph& graph_;

@@ -100,9 +100,10 @@ TEST(Memory, TakesLittleMoreThanIsAliveAtOnce) {
   std::sort(ratios.begin(), ratios.end());
   const auto least = static_cast<double>(std::count(ratios.begin(), ratios.end(), 1.0));
   const double mean = std::accumulate(ratios.begin(), ratios.end(), 0.0) / static_cast<double>(ratios.size());
-  std::cout << fmt::format("of the most that is alive at once: {:.1f} % of graphs take just that, mean {:.4f}, 99th percentile "
-                           "{:.3f}, worst {:.3f}\n",
-                           100.0 * least / static_cast<double>(ratios.size()), mean, ratios[2970], ratios.back());
+  std::cout << fmt::format(
+      "of the most that is alive at once: {:.1f} % of graphs take just that, mean {:.4f}, 99th percentile "
+      "{:.3f}, worst {:.3f}\n",
+      100.0 * least / static_cast<double>(ratios.size()), mean, ratios[2970], ratios.back());
   EXPECT_GE(ratios.front(), 1.0);
   EXPECT_EQ(ratios[1500], 1.0);
   EXPECT_LT(mean, 1.005);
@@ -250,9 +251,10 @@ TEST(Memory, WhatATwentyPassGraphSaves) {
   ASSERT_EQ(r.text(), "");
   ASSERT_EQ(r.graph.passes.size(), 20u);
   const double saved = 1.0 - static_cast<double>(r.graph.sharedBytes()) / static_cast<double>(r.graph.separateBytes());
-  std::cout << fmt::format("{} passes, {}x{}: {:.1f} MB apart, {:.1f} MB shared, {:.1f} % saved; {:.1f} MB alive at once\n",
-                           r.graph.passes.size(), r.graph.width, r.graph.height, r.graph.separateBytes() / 1e6,
-                           r.graph.sharedBytes() / 1e6, 100 * saved, r.graph.mostAlive() / 1e6);
+  std::cout << fmt::format(
+      "{} passes, {}x{}: {:.1f} MB apart, {:.1f} MB shared, {:.1f} % saved; {:.1f} MB alive at once\n",
+      r.graph.passes.size(), r.graph.width, r.graph.height, r.graph.separateBytes() / 1e6, r.graph.sharedBytes() / 1e6,
+      100 * saved, r.graph.mostAlive() / 1e6);
   EXPECT_EQ(r.graph.sharedBytes(), r.graph.mostAlive()) << "as good as can be";
   EXPECT_NEAR(saved, 0.479, 0.001);
 }

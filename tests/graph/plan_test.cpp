@@ -160,7 +160,8 @@ TEST_F(Plan, ExplainAndDotSayWhatTheyShould) {
         "wait until gbuffer.surface can be read, which gbuffer wrote\n",
         "spatial: it is disabled; temporal.reservoirs stands for its 'reservoirs'", "radiance <- shade.color",
         "two copies of its own: history", "barrier compute writes -> compute reads\n",
-        "wait for 6 more: earlier barriers see to it\n", "16.6 MB  ###..  at 99.5 MB\n", "Most alive at once", "scene.geometry", "temporal.previousSurface next frame"})
+        "wait for 6 more: earlier barriers see to it\n", "16.6 MB  ###..  at 99.5 MB\n", "Most alive at once",
+        "scene.geometry", "temporal.previousSurface next frame"})
     EXPECT_NE(text.find(words), std::string::npos) << words << "\nis missing in\n" << text;
   const std::string picture = dot(r.graph);
   for (const char* words :

@@ -165,8 +165,8 @@ class RandomGraphs {
     }
     std::string outputs;
     for (int o = below(3); o >= 0; --o)
-      outputs += fmt::format("{}\"q{}\": \"{}{}\"", outputs.empty() ? "" : ", ", o,
-                             source(-1, passes), below(6) ? "" : "@previous");
+      outputs += fmt::format("{}\"q{}\": \"{}{}\"", outputs.empty() ? "" : ", ", o, source(-1, passes),
+                             below(6) ? "" : "@previous");
     return "{\"version\": 1, \"passes\": {" + text + "}, \"outputs\": {" + outputs + "}}";
   }
 
