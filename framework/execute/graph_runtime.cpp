@@ -135,7 +135,9 @@ void GraphRuntime::makeBarriers() {
       VkImageMemoryBarrier2& b =
           barriers_[p].images.emplace_back(toGeneral(resources_->at(s.resource, 0, false).image));
       b.srcStageMask = vulkanStages(s.from);
-      b.srcAccessMask = s.writes ? writeAccess(s.from) : 0;
+      // Nothing has to be made available: the waits do that. It tells the validation layers that this image's uses in
+      // the last frame are in the chain.
+      b.srcAccessMask = readAccess(s.from) | writeAccess(s.from);
       b.dstStageMask = vulkanStages(pass.stages);
       b.dstAccessMask = readAccess(pass.stages) | writeAccess(pass.stages);
     }

@@ -74,11 +74,11 @@ struct Wait {
   bool operator==(const Wait&) const = default;
 };
 
-/// An image that takes over memory which others used: its content starts undefined, and it is put into its layout.
+/// An image that takes over memory which others used: its content starts undefined, and it is put into its layout. What
+/// they wrote is made available by the waits, here or earlier.
 struct ImageStart {
   uint32_t resource = kNone;
-  Stages from = 0;      ///< who had the memory
-  bool writes = false;  ///< some of them wrote without anybody reading
+  Stages from = 0;  ///< of who had the memory: it comes after them
   bool operator==(const ImageStart&) const = default;
 };
 

@@ -94,8 +94,8 @@ class Explainer {
       say("       barrier {}{} -> {}{}{}\n", stagesText(w.from), w.writes ? " writes" : "", stagesText(w.to),
           w.toReads ? " reads" : "", w.toWrites ? " writes" : "");
     for (const ImageStart& s : p.starts)
-      say("       barrier {}{} -> {}: {} starts undefined\n", stagesText(s.from), s.writes ? " writes" : "",
-          stagesText(p.stages), graph_.resources[s.resource].name);
+      say("       barrier {} -> {}: {} starts undefined\n", stagesText(s.from), stagesText(p.stages),
+          graph_.resources[s.resource].name);
   }
 
   std::string readers(uint32_t resource) const {

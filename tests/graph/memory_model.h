@@ -3,11 +3,10 @@
 //
 // Each access is followed on its own, as the validation layers do, by what barriers have happened since:
 //   ordered    stages whose later work comes after the access
-//   available  stages whose later barriers can make the write visible
-//   readable, writable   stages whose later reads and writes see it
-// A barrier holds for an access when it comes from the access's stage, or from a stage that the access is ordered
-// before (a chain). Reading wants readable. Overwriting wants: of reads that they are ordered before; of a write that
-// was read since, ordered before and available, which follows from the reads; of a write that was not, writable.
+//   readable, writable   stages whose later reads and writes see it, after a write
+// Reading wants readable. Overwriting wants: of reads that they are ordered before; of a write that nobody read since,
+// writable (one that was read is over when the reads are). Stricter than Vulkan in two ways, again as the validation
+// layers are: barriers don't chain by way of other stages, and an image's own barrier is trusted with that image alone.
 #pragma once
 
 #include <weir/graph/compile.h>
@@ -40,7 +39,7 @@ class MemoryModel {
 
   struct Access {
     Stages stage = 0;  ///< one bit
-    Stages ordered = 0, available = 0, readable = 0, writable = 0;
+    Stages ordered = 0, readable = 0, writable = 0;
   };
   /// Bytes that are always used together.
   struct Piece {
@@ -91,44 +90,32 @@ class MemoryModel {
 
   // ------------------------------------------------------------------------------------------------ barriers
 
-  /// All barriers before a pass are one command: none of them chains with another.
+  /// All barriers before a pass are one command: images change their layout after what it makes available.
   void barriers(const CompiledPass& pass) {
     std::vector<size_t> transitions;
     for (const ImageStart& s : pass.starts)
       for (const size_t place : piecesOf(s.resource, frame_)) {
         const Piece& piece = pieces_[place];
         const std::string who = graph_.resources[s.resource].name + "'s start";
-        for (const Access& a : piece.reads)
-          if (!holds(s.from, a.stage, a.ordered)) blame(who, piece, "may still be read");
-        for (const Access& a : piece.write)
-          if (!(piece.reads.empty() ? (s.writes && (a.stage & s.from) != 0) || (a.available & s.from) != 0
-                                    : holds(s.from, a.stage, a.ordered)))
-            blame(who, piece, "may still be written");
+        for (const Access& a : piece.reads.empty() ? piece.write : piece.reads)
+          if ((a.stage & s.from) == 0) blame(who, piece, "may still be in use");
         transitions.push_back(place);
       }
     for (Piece& piece : pieces_)
       for (std::vector<Access>* list : {&piece.write, &piece.reads})
-        for (Access& a : *list) {
-          Access after = a;
-          for (const Wait& w : pass.waits) waitFor(w, a, after);
-          for (const ImageStart& s : pass.starts) {  // what it orders is not the image alone
-            if (holds(s.from, a.stage, a.ordered)) after.ordered |= pass.stages;
-            if ((a.available & s.from) != 0) after.available |= pass.stages;
+        for (Access& a : *list)
+          for (const Wait& w : pass.waits) {
+            if ((a.stage & w.from) == 0) continue;
+            a.ordered |= w.to;
+            if (w.writes && w.toReads) a.readable |= w.to;
+            if (w.writes && w.toWrites) a.writable |= w.to;
           }
-          a = after;
-        }
-    for (const size_t place : transitions) pieces_[place] = {kUndefined, frame_, {}, {}};
-  }
-
-  static bool holds(Stages from, Stages stage, Stages ordered) { return ((stage | ordered) & from) != 0; }
-
-  static void waitFor(const Wait& w, const Access& before, Access& after) {
-    if (!holds(w.from, before.stage, before.ordered)) return;
-    after.ordered |= w.to;
-    if (!((w.writes && (before.stage & w.from) != 0) || (before.available & w.from) != 0)) return;
-    after.available |= w.to;
-    if (w.toReads) after.readable |= w.to;
-    if (w.toWrites) after.writable |= w.to;
+    for (const size_t place : transitions) {
+      Piece& piece = pieces_[place];
+      for (const Access& a : piece.write)
+        if (piece.reads.empty() && (pass.stages & ~a.writable) != 0) blame("a start", piece, "may still be written");
+      piece = {kUndefined, frame_, {}, {}};
+    }
   }
 
   // ------------------------------------------------------------------------------------------------ accesses
@@ -151,8 +138,7 @@ class MemoryModel {
       for (const Access& a : piece.reads)
         if ((pass.stages & ~a.ordered) != 0) blame(pass.name, piece, "may still be read");
       for (const Access& a : piece.write)
-        if ((pass.stages & ~(piece.reads.empty() ? a.writable : a.ordered & a.available)) != 0)
-          blame(pass.name, piece, "may still be written");
+        if (piece.reads.empty() && (pass.stages & ~a.writable) != 0) blame(pass.name, piece, "may still be written");
       const bool foreign = piece.resource != kUndefined && piece.resource != static_cast<int>(resource);
       if (graph_.resources[resource].isImage() && foreign) blame(pass.name, piece, "was no image in its layout");
       piece = {static_cast<int>(resource), frame_, {}, {}};

@@ -31,7 +31,7 @@ class OnePass {
   OnePass(const std::string& pass, uint32_t width, uint32_t height)
       : device_(validatedDevice()),
         guard_(*device_),
-        registry_({std::filesystem::path(WEIR_BINARY_DIR) / "bin"}),
+        registry_({std::filesystem::path(binaryPath("bin"))}),
         compiler_("-"),
         scene_(*device_, scene::Scene{}, scene::prepareScene(scene::Scene{}), false) {
     const WeirPassEntry given[] = {passEntry<Given>("Given")};

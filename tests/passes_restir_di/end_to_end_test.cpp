@@ -22,7 +22,7 @@ class Laboratory {
   Laboratory(const std::string& sceneFile, const std::string& environment)
       : device_(validatedDevice()),
         guard_(*device_),
-        registry_({std::filesystem::path(WEIR_BINARY_DIR) / "bin"}),
+        registry_({std::filesystem::path(binaryPath("bin"))}),
         stage_(render::makeStage(
             {.scene = sourcePath(sceneFile), .environment = environment.empty() ? "" : sourcePath(environment)}, 1.0f)),
         scene_(*device_, stage_.scene, stage_.prepared, device_->capabilities().accelerationStructure) {}

@@ -23,7 +23,7 @@ class Laboratory {
   explicit Laboratory(const std::string& clip)
       : device_(validatedDevice()),
         guard_(*device_),
-        registry_({std::filesystem::path(WEIR_BINARY_DIR) / "bin"}),
+        registry_({std::filesystem::path(binaryPath("bin"))}),
         stage_(render::makeStage({.scene = sourcePath("scenes/cornell-moving.glb"),
                                   .animate = true,
                                   .clip = clip,

@@ -16,6 +16,23 @@ std::string deviceChoice() {
   return wanted && *wanted ? wanted : "cpu";
 }
 
+namespace {
+
+std::string within(const char* variable, const char* compiledIn, const std::string& relative) {
+  const char* given = std::getenv(variable);
+  return std::string(given != nullptr && *given != 0 ? given : compiledIn) + "/" + relative;
+}
+
+}  // namespace
+
+std::string sourcePath(const std::string& relative) {
+  return within("WEIR_SOURCE_DIR", WEIR_SOURCE_DIR, relative);
+}
+
+std::string binaryPath(const std::string& relative) {
+  return within("WEIR_BINARY_DIR", WEIR_BINARY_DIR, relative);
+}
+
 std::shared_ptr<gpu::Device> validatedDevice() {
   // Held here until the program ends: making a device takes longer than most tests. GoogleTest tears environments down
   // before static objects die, and the validation layer must not outlive its own statics.

@@ -11,6 +11,11 @@ namespace weir::test {
 /// What tests run on: $WEIR_TEST_DEVICE, or "cpu" so that they run everywhere and alike.
 std::string deviceChoice();
 
+/// Absolute path of a file in the source tree, which $WEIR_SOURCE_DIR moves; and in the build tree ($WEIR_BINARY_DIR):
+/// so test programs can be run from copies of both on another machine.
+std::string sourcePath(const std::string& relative);
+std::string binaryPath(const std::string& relative);
+
 /// One device for the whole test program, with validation on. It lives until the last user lets go of it.
 /// Hold the pointer in the test or the fixture for as long as anything made from it lives.
 std::shared_ptr<gpu::Device> validatedDevice();

@@ -48,12 +48,8 @@ struct PassTest::Machine {
   std::unique_ptr<execute::Executor> executor;
 
   explicit Machine(std::shared_ptr<gpu::Device> d)
-      : device(std::move(d)), guard(*device), registry({std::filesystem::path(WEIR_BINARY_DIR) / "bin"}) {}
+      : device(std::move(d)), guard(*device), registry({std::filesystem::path(binaryPath("bin"))}) {}
 };
-
-std::string sourcePath(const std::string& relative) {
-  return std::string(WEIR_SOURCE_DIR) + "/" + relative;
-}
 
 PassTest::PassTest(std::string type) : type_(std::move(type)) {}
 PassTest::~PassTest() = default;

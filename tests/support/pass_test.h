@@ -16,10 +16,9 @@
 #include <string>
 #include <vector>
 
-namespace weir::test {
+#include "support/device.h"
 
-/// Absolute path of a file in the source tree.
-std::string sourcePath(const std::string& relative);
+namespace weir::test {
 
 class PassTest {
  public:
