@@ -1,4 +1,6 @@
 // Random graphs on the device, their transient memory shared: every pass checks every element that it reads.
+#include <weir/gpu/vulkan.h>
+
 #include "execute/pattern_passes.h"
 
 namespace weir::test {
@@ -131,6 +133,47 @@ TEST(RandomGraphs, WouldNoticeALifeThatBeginsTooLate) {
     graph.resources[r].firstUse = graph.resources[r].lastUse;
   };
   EXPECT_EQ(foundOf(40, true, damage), 40);
+}
+
+PFN_vkCmdPipelineBarrier2 realBarrier = nullptr;
+
+/// Images still get their layouts; nothing waits for memory.
+void VKAPI_CALL withoutMemoryBarriers(VkCommandBuffer commands, const VkDependencyInfo* info) {
+  VkDependencyInfo less = *info;
+  less.memoryBarrierCount = 0;
+  std::vector<VkImageMemoryBarrier2> images(info->pImageMemoryBarriers,
+                                            info->pImageMemoryBarriers + info->imageMemoryBarrierCount);
+  for (VkImageMemoryBarrier2& image : images) image.srcStageMask = image.srcAccessMask = 0;
+  less.pImageMemoryBarriers = images.data();
+  if (!images.empty()) realBarrier(commands, &less);
+}
+
+/// That the graphs above could find missing barriers at all, shown where work really overlaps.
+TEST(RandomGraphs, WouldNoticeMissingBarriersOnAGpu) {
+  const std::string kind = validatedDevice()->info().kind;
+  if (kind == "cpu") GTEST_SKIP() << "this device runs one pass after the other whatever barriers say";
+  if (validationWanted()) GTEST_SKIP() << "the layers would find it first: WEIR_TEST_VALIDATION=off";
+  constexpr int kLarge = 30;
+  for (const bool damaged : {false, true}) {
+    std::mt19937 random(4);
+    PatternMachine machine(false);
+    int found = 0;
+    for (int done = 0; done < kLarge;) {
+      auto graph = machine.compile(randomPatternGraph(random, machine.types), 1000, 701);
+      if (!graph) continue;
+      ++done;
+      machine.load(std::move(*graph));
+      if (damaged) realBarrier = std::exchange(vkCmdPipelineBarrier2, withoutMemoryBarriers);
+      machine.run(kFrames);
+      if (damaged) vkCmdPipelineBarrier2 = realBarrier;
+      found += machine.faults().wrong > 0 ? 1 : 0;
+    }
+    std::cout << found << " of " << kLarge << " graphs wrong " << (damaged ? "without" : "with") << " barriers\n";
+    if (damaged)
+      EXPECT_GT(found, 0);
+    else
+      EXPECT_EQ(found, 0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Poisoned, RandomGraphsRun, ::testing::Values(true));

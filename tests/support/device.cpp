@@ -16,6 +16,11 @@ std::string deviceChoice() {
   return wanted && *wanted ? wanted : "cpu";
 }
 
+bool validationWanted() {
+  const char* wanted = std::getenv("WEIR_TEST_VALIDATION");
+  return wanted == nullptr || std::string(wanted) != "off";
+}
+
 namespace {
 
 std::string within(const char* variable, const char* compiledIn, const std::string& relative) {
@@ -50,7 +55,7 @@ std::shared_ptr<gpu::Device> validatedDevice() {
   const std::lock_guard lock(mutex);
   if (!holder->device) {
     holder->device = std::make_shared<gpu::Device>(
-        gpu::DeviceOptions{.choice = deviceChoice(), .validation = true, .cacheFolder = "-"});
+        gpu::DeviceOptions{.choice = deviceChoice(), .validation = validationWanted(), .cacheFolder = "-"});
   }
   return holder->device;
 }
