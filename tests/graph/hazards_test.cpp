@@ -92,7 +92,7 @@ void forEachLoss(CompiledGraph& graph, const Check& check) {
 TEST(Hazards, EveryBarrierAndEveryBitOfOneIsNeeded) {
   RandomGraphs random(77);
   int losses = 0, spare = 0;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     CompiledGraph graph = random.next();
     random.plan(graph);
     const std::string plan = explain(graph);
@@ -105,7 +105,7 @@ TEST(Hazards, EveryBarrierAndEveryBitOfOneIsNeeded) {
     });
   }
   EXPECT_EQ(spare, 0) << "of " << losses;
-  EXPECT_GT(losses, 10'000);
+  EXPECT_GT(losses, 40'000);
 }
 
 /// Two resources that are alive in the same pass have bytes in common.
