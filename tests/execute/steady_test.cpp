@@ -92,7 +92,7 @@ class Steady : public ::testing::Test {
   }
 
   gpu::Device device_{options()};
-  Registry registry_{{std::filesystem::path(WEIR_BINARY_DIR) / "bin"}};
+  Registry registry_{{std::filesystem::path(binaryPath("bin"))}};
   shader::Compiler compiler_;
   std::unique_ptr<render::Stage> stage_;
   std::unique_ptr<render::Player> player_;
