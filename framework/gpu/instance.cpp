@@ -75,7 +75,8 @@ void loadVulkan(PFN_vkGetInstanceProcAddr loader) {
   static bool loaded = false;
   const std::lock_guard lock(mutex);
   if (loaded) return;
-  vkDestroyInstance(createInstance(false, nullptr), nullptr);
+  const VkInstance instance = createInstance(false, nullptr);  // fills in vkDestroyInstance, too
+  vkDestroyInstance(instance, nullptr);
   loaded = true;
 }
 
