@@ -20,14 +20,13 @@ bool isWritten(const graph::Resource& r) {
 }
 
 void checkSlot(const std::string& name, uint32_t slot) {
-  if (slot >= WEIR_SLOTS)
-    throw InputError(fmt::format("'{}': slot {}; expected 0 to {}", name, slot, WEIR_SLOTS - 1));
+  if (slot >= WEIR_SLOTS) throw InputError(fmt::format("'{}': slot {}; expected 0 to {}", name, slot, WEIR_SLOTS - 1));
 }
 
 void checkLayouts(const std::string& name, const WeirAccess& before, const WeirAccess& after, bool written) {
   if (before.layout == VK_IMAGE_LAYOUT_UNDEFINED && !written)
-    throw InputError(fmt::format(
-        "'{}' is read by the graph, and before.layout UNDEFINED would throw its content away", name));
+    throw InputError(
+        fmt::format("'{}' is read by the graph, and before.layout UNDEFINED would throw its content away", name));
   if (after.layout == VK_IMAGE_LAYOUT_UNDEFINED || after.layout == VK_IMAGE_LAYOUT_PREINITIALIZED)
     throw InputError(fmt::format("'{}': after.layout must be one that an image can be put into", name));
 }

@@ -1,4 +1,5 @@
-// Between C and C++: exceptions become a status and a message, structures of the caller's become values. Not for others.
+// Between C and C++: exceptions become a status and a message, structures of the caller's become values. Not for
+// others.
 #pragma once
 
 #include <fmt/format.h>

@@ -33,8 +33,7 @@ void addMissingOf(const graph::CompiledGraph& graph, const std::string& trace, c
   for (const graph::CompiledPass& pass : graph.passes) {
     const auto add = [&](const char* does, const std::vector<std::string>& missing) {
       if (!missing.empty())
-        lines.push_back(
-            fmt::format("pass '{}' ({}) {}: {}", pass.name, pass.type, does, fmt::join(missing, ", ")));
+        lines.push_back(fmt::format("pass '{}' ({}) {}: {}", pass.name, pass.type, does, fmt::join(missing, ", ")));
     };
     if (pass.description->has(Need::SceneAcceleration)) add("may trace rays", rays);
     if (pass.description->draws) add("rasterises", info.missingForRaster);

@@ -1,6 +1,6 @@
-// Weir inside an engine that has a Vulkan device already: a graph becomes one node of the host's frame, recorded into the
-// host's own command buffer, on the host's images, under the host's synchronization. C11; docs/embedding.md goes through
-// it. Implemented in libweir.so.
+// Weir inside an engine that has a Vulkan device already: a graph becomes one node of the host's frame, recorded into
+// the host's own command buffer, on the host's images, under the host's synchronization. C11; docs/embedding.md goes
+// through it. Implemented in libweir.so.
 //
 // Conventions
 // - Every function returns a status. Nothing is thrown, nothing global is changed; what went wrong is told by
@@ -112,18 +112,18 @@ WeirStatus weirDestroyScene(WeirScene* scene);
 
 typedef struct WeirGraphInfo {
   size_t size;
-  const char* file;        /* JSON; or */
-  const char* json;        /* the text itself */
-  uint32_t width, height;  /* of the frame */
-  WeirTexts set;           /* "pass.parameter=value", as --set */
+  const char* file;       /* JSON; or */
+  const char* json;       /* the text itself */
+  uint32_t width, height; /* of the frame */
+  WeirTexts set;          /* "pass.parameter=value", as --set */
   WeirTexts enable, disable;
   WeirTexts provided; /* "pass.port" or "pass.port@previous": content of the host's, so that the pass need not run */
   WeirTexts external; /* "pass.port": written into the host's image or buffer */
   const char* trace;  /* "auto" (NULL), "pipeline" or "query" */
 } WeirGraphInfo;
 
-/* Lines: what the device that `host` describes lacks, for Weir at all and, where `graph` is not NULL, for each pass that
-   would run. None: it will do. Builds nothing; `host->device` need not exist yet. */
+/* Lines: what the device that `host` describes lacks, for Weir at all and, where `graph` is not NULL, for each pass
+   that would run. None: it will do. Builds nothing; `host->device` need not exist yet. */
 WeirStatus weirMissing(Weir* weir, const WeirHost* host, const WeirGraphInfo* graph);
 
 /* Compiles everything; says all that is wrong with the graph at once. */
@@ -131,9 +131,9 @@ WeirStatus weirCreateGraph(WeirScene* scene, const WeirGraphInfo* info, WeirGrap
 /* No frame of it may be in flight. */
 WeirStatus weirDestroyGraph(WeirGraph* graph);
 
-/* Changes between two frames, while earlier frames may be in flight. When one fails, the graph is as it was. History goes
-   on wherever pass, layout and size stay; where a value is compiled into shaders, the change takes as long as compiling
-   them does. */
+/* Changes between two frames, while earlier frames may be in flight. When one fails, the graph is as it was. History
+   goes on wherever pass, layout and size stay; where a value is compiled into shaders, the change takes as long as
+   compiling them does. */
 WeirStatus weirSet(WeirGraph* graph, WeirTexts set);
 WeirStatus weirEnable(WeirGraph* graph, const char* pass, uint32_t enabled);
 /* History starts anew, and every image and buffer of the host's has to be bound again. */
@@ -141,7 +141,8 @@ WeirStatus weirResize(WeirGraph* graph, uint32_t width, uint32_t height);
 /* The next frame starts without a past. */
 WeirStatus weirResetHistory(WeirGraph* graph);
 
-/* ------------------------------------------------------------------------------------- the host's images and buffers */
+/* ------------------------------------------------------------------------------------- the host's images and buffers
+ */
 
 /* What the graph expects in a place of the host's. */
 typedef struct WeirPort {
@@ -210,8 +211,8 @@ typedef struct WeirFrame {
   uint32_t firstQuery;      /* the first of as many as weirDescribePasses says */
 } WeirFrame;
 
-/* Records the node, outside of a render pass, into a buffer that is submitted once, to the context's queue, in the order
-   in which the frames of a graph were recorded. */
+/* Records the node, outside of a render pass, into a buffer that is submitted once, to the context's queue, in the
+   order in which the frames of a graph were recorded. */
 WeirStatus weirRecord(WeirGraph* graph, VkCommandBuffer commands, const WeirFrame* frame);
 
 /* Lines: names of the passes that run, in order. `queries`, when not NULL: how many a frame's timestamps take. */

@@ -28,8 +28,8 @@ scene::Camera camera(const WeirCamera& from) {
   if (!(glm::length(across) > 1e-6f)) throw InputError("WeirCamera.forward and up are parallel");
   c.up = glm::normalize(glm::cross(across, c.forward));
   if (!(from.verticalFov > 0.0f && from.verticalFov < 3.14159265f))
-    throw InputError(fmt::format("WeirCamera.verticalFov is {}; expected more than 0 and less than pi",
-                                 from.verticalFov));
+    throw InputError(
+        fmt::format("WeirCamera.verticalFov is {}; expected more than 0 and less than pi", from.verticalFov));
   c.verticalFov = from.verticalFov;
   return c;
 }

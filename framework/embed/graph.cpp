@@ -48,9 +48,7 @@ using namespace weir;
 using namespace weir::embed;
 
 WeirGraph::WeirGraph(WeirScene& owner, GraphSource from, trace::Backend backend)
-    : scene(owner),
-      source(std::move(from)),
-      frame(scene.context.device, scene.context.weir.compiler, scene.gpu) {
+    : scene(owner), source(std::move(from)), frame(scene.context.device, scene.context.weir.compiler, scene.gpu) {
   options.backend = backend;
   options.sceneFolder = scene.folder;
   runtime = std::make_unique<execute::GraphRuntime>(scene.context.services(), frame, compile(weir(), source), options);

@@ -61,8 +61,8 @@ Device::Device(const HostDevice& host)
     throw InputError("the host's instance, physical device, device and queue must all be given");
   info_ = inspect(host);
   if (!info_.missing.empty())
-    throw InputError(fmt::format("the host's device ({}) cannot run Weir: it lacks {}", info_.name,
-                                 fmt::join(info_.missing, ", ")));
+    throw InputError(
+        fmt::format("the host's device ({}) cannot run Weir: it lacks {}", info_.name, fmt::join(info_.missing, ", ")));
   instance_ = host.instance;
   physical_ = host.physical;
   device_ = host.device;

@@ -52,7 +52,7 @@ struct DeviceInfo {
   std::string name, driver;  ///< driver: name and version in words
   std::string kind;          ///< "discrete", "integrated", "virtual", "cpu", "other"
   uint32_t apiVersion = 0;
-  std::vector<std::string> missing;  ///< of Weir's minimum; empty: usable
+  std::vector<std::string> missing;                           ///< of Weir's minimum; empty: usable
   std::vector<std::string> missingForRays, missingForRaster;  ///< of what passes need that trace, or rasterise
   Capabilities capabilities;
 };
@@ -60,8 +60,8 @@ struct DeviceInfo {
 /// Every Vulkan device of this machine, usable or not. Throws RuntimeError when there is no Vulkan at all.
 std::vector<DeviceInfo> listDevices();
 
-/// What a host's device was made with, seen as `listDevices` sees those of the machine. No device is needed for it, only
-/// instance and physical device. Throws RuntimeError when there is no Vulkan, or not the host's.
+/// What a host's device was made with, seen as `listDevices` sees those of the machine. No device is needed for it,
+/// only instance and physical device. Throws RuntimeError when there is no Vulkan, or not the host's.
 DeviceInfo inspect(const HostDevice& host);
 
 /// What a host should make its device with, so that it runs everything that its physical device can.
@@ -139,7 +139,7 @@ class Device {
   void createServices(const std::string& cache);
   void createAllocator();
   void destroy() noexcept;
-  bool owned_ = true;       ///< instance and device are to be destroyed here
+  bool owned_ = true;        ///< instance and device are to be destroyed here
   bool debugUtils_ = false;  ///< the instance has VK_EXT_debug_utils
   DeviceInfo info_;
   VkInstance instance_ = VK_NULL_HANDLE;

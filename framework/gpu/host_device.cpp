@@ -47,11 +47,9 @@ void readRays(const HostDevice& host, FeatureChain& chain, DeviceInfo& info) {
   has.accelerationStructure &= structures;
   has.rayPipeline &= structures && named(host.extensions, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME) &&
                      chain.rayPipelines.rayTracingPipeline;
-  has.rayQuery &=
-      structures && named(host.extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME) && chain.rayQueries.rayQuery;
+  has.rayQuery &= structures && named(host.extensions, VK_KHR_RAY_QUERY_EXTENSION_NAME) && chain.rayQueries.rayQuery;
   if (!has.rayPipeline && !has.rayQuery)
-    missing.emplace_back(
-        "VK_KHR_ray_query with rayQuery, or VK_KHR_ray_tracing_pipeline with rayTracingPipeline");
+    missing.emplace_back("VK_KHR_ray_query with rayQuery, or VK_KHR_ray_tracing_pipeline with rayTracingPipeline");
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ struct FeatureChain {
   VkPhysicalDeviceRayQueryFeaturesKHR rayQueries{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR};
 };
 
-/// What a chain in the host's own structures, of any version or extension, switches on. Those that are not there are off.
+/// What a chain in the host's own structures, of any version or extension, switches on. Those that are not there are
+/// off.
 void takeEnabled(const VkPhysicalDeviceFeatures2* enabled, FeatureChain& chain);
 
 /// A feature by its name and its place. Weir cannot do without the required ones; the others are taken where they
@@ -48,8 +49,8 @@ struct Probe {
   uint32_t queueFamily = 0;
 };
 
-/// Sees to it that Vulkan's entry points are there and that they are those of `loader`, when it is given. RuntimeError when
-/// there is no Vulkan, or when the process has it from another loader already.
+/// Sees to it that Vulkan's entry points are there and that they are those of `loader`, when it is given. RuntimeError
+/// when there is no Vulkan, or when the process has it from another loader already.
 void loadVulkan(PFN_vkGetInstanceProcAddr loader);
 
 /// Loads the Vulkan library once per process and creates an instance. RuntimeError when there is no Vulkan or no
