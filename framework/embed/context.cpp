@@ -16,7 +16,7 @@ gpu::HostDevice hostDevice(const Weir& weir, const WeirHost& host) {
   device.queueFamily = host.queueFamily;
   device.features = host.features;
   device.extensions = texts(host.deviceExtensions, "WeirHost.deviceExtensions");
-  device.cacheFolder = weir.cacheFolder;
+  device.pipelineCacheFolder = weir.cacheFolder;
   return device;
 }
 

@@ -71,7 +71,7 @@ Device::Device(const HostDevice& host)
   debugUtils_ = hasDebugUtils() &&
                 std::ranges::count(host.instanceExtensions, std::string(VK_EXT_DEBUG_UTILS_EXTENSION_NAME)) > 0;
   try {
-    createServices(host.cacheFolder);
+    createServices(host.pipelineCacheFolder);
   } catch (...) {
     destroy();
     throw;

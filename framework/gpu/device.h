@@ -32,7 +32,7 @@ struct HostDevice {
   uint32_t queueFamily = 0;
   const VkPhysicalDeviceFeatures2* features = nullptr;  ///< as in VkDeviceCreateInfo::pNext; read at once
   std::vector<std::string> extensions;
-  std::string cacheFolder;  ///< as in DeviceOptions
+  std::string pipelineCacheFolder;  ///< as cacheFolder in DeviceOptions
 };
 
 /// What a device offers beyond Weir's minimum.

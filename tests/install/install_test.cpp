@@ -102,10 +102,9 @@ TEST_F(Installed, HoldsWhatItShouldAndNoPathOfItsOrigin) {
   for (const char* file :
        {"bin/weir", "lib/libweir.so", "lib/weir/libweir_output.so", "lib/weir/weir_output.json",
         "lib/weir/shaders/common/trace.glsl", "lib/weir/shaders/output/tonemap.glsl", "include/weir/pass/plugin.h",
-        "include/weir/embed/embed.h",
-        "include/weir/passes/common/layouts.h", "share/weir/graphs/restir_di.json", "share/weir/scenes/cornell.glb",
-        "lib/cmake/weir/weirConfig.cmake", "lib/cmake/weir/weirConfigVersion.cmake", "lib/cmake/weir/weirTargets.cmake",
-        "lib/cmake/weir/weir_plugin.cmake"})
+        "include/weir/embed/embed.h", "include/weir/passes/common/layouts.h", "share/weir/graphs/restir_di.json",
+        "share/weir/scenes/cornell.glb", "lib/cmake/weir/weirConfig.cmake", "lib/cmake/weir/weirConfigVersion.cmake",
+        "lib/cmake/weir/weirTargets.cmake", "lib/cmake/weir/weir_plugin.cmake"})
     EXPECT_TRUE(fs::is_regular_file(prefix() / file)) << file;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(prefix())) {
     EXPECT_FALSE(entry.is_symlink()) << entry.path();
