@@ -3,11 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "node.h"
 
 namespace weir::test {
 namespace {
+
+std::string readFile(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 
 TEST(EmbeddedFrame, ProvidedPortReplacesItsPass) {
   Host host;
@@ -69,6 +76,28 @@ TEST(EmbeddedFrame, ChangesWhileFramesAreInFlight) {
     EXPECT_EQ(weirEnable(node.graph(), "scale", i % 2), WEIR_OK) << host.message();
   }
   EXPECT_EQ(node.meanWith(1.0f), (sum + 2.0f) / 13.0f);
+}
+
+/// What one graph wrote with rays is read by the next one, which knows only compute shaders: synchronization validation
+/// sees both, as they are in one command buffer.
+TEST(EmbeddedFrame, AGraphMayChangeWithinACommandBuffer) {
+  Host host;
+  std::string json = readFile(sourcePath("graphs/restir_di.json"));
+  const std::string traced = "gbuffer.RayTraced";
+  json.replace(json.find(traced), traced.size(), "gbuffer.Raster");
+  Node node(host, {.json = json.c_str(),
+                   .set = Texts{"initial.visibility=false", "shade.visibility=false", "spatial.visibilityRays=true"},
+                   .external = Texts{"tonemap.color"},
+                   .trace = "pipeline"});
+  for (uint32_t s = 0; s < WEIR_SLOTS; ++s) {
+    const HostImage out = host.image(VK_FORMAT_R32G32B32A32_SFLOAT, kWidth, kHeight);
+    ASSERT_EQ(node.bind("tonemap.color", s, out, kNothing, kStorage), WEIR_OK) << host.message();
+  }
+  host.run([&](VkCommandBuffer commands) {
+    EXPECT_EQ(node.record(commands, 0, 0), WEIR_OK) << host.message();
+    EXPECT_EQ(weirSet(node.graph(), Texts{"spatial.visibilityRays=false"}), WEIR_OK) << host.message();
+    EXPECT_EQ(node.record(commands, 1, 1), WEIR_OK) << host.message();
+  });
 }
 
 TEST(EmbeddedFrame, TwoContextsInOneSubmission) {
