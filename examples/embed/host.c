@@ -34,9 +34,8 @@ void makeInstance(Host* host, int validate, const char* name) {
                                               .pNext = &messenger,
                                               .enabledValidationFeatureCount = 1,
                                               .pEnabledValidationFeatures = &synchronization};
-  const VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                         .pApplicationName = "embed",
-                                         .apiVersion = VK_API_VERSION_1_3};
+  const VkApplicationInfo application = {
+      .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .pApplicationName = "embed", .apiVersion = VK_API_VERSION_1_3};
   const VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                                      .pNext = validate ? &validation : NULL,
                                      .pApplicationInfo = &application,
@@ -155,8 +154,7 @@ Readback makeReadback(const Host* host, VkDeviceSize bytes) {
   VK(vkCreateBuffer(host->device, &info, NULL, &made.buffer));
   VkMemoryRequirements asked;
   vkGetBufferMemoryRequirements(host->device, made.buffer, &asked);
-  made.memory =
-      allocate(host, asked, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+  made.memory = allocate(host, asked, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
   VK(vkBindBufferMemory(host->device, made.buffer, made.memory, 0));
   void* mapped;
   VK(vkMapMemory(host->device, made.memory, 0, VK_WHOLE_SIZE, 0, &mapped));

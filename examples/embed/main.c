@@ -1,8 +1,8 @@
 /* A host that has Weir in its frame: three nodes, two frames in flight, everything its own.
  *
- *   motion    the host's: what moved since the last frame. Here nothing did, so it is a clear; an engine has this already
- *   weir      a graph that reads the host's motion instead of its own and writes the host's picture
- *   compose   the host's: the picture into a frame
+ *   motion    the host's: what moved since the last frame. Here nothing did, so it is a clear; an engine has this
+ * already weir      a graph that reads the host's motion instead of its own and writes the host's picture compose   the
+ * host's: the picture into a frame
  *
  * The last frame is written as a PFM. */
 #include <stdio.h>
@@ -112,8 +112,7 @@ static WeirAccess access(Use use) {
 static Image makePortImage(Engine* e, const char* name, uint32_t slot, VkImageUsageFlags usage, Use before, Use after) {
   WeirPort port = {.size = sizeof port};
   WEIR(weirDescribePort(e->graph, name, &port));
-  const Image image =
-      makeImage(&e->host, port.format, port.width, port.height, usage | VK_IMAGE_USAGE_STORAGE_BIT);
+  const Image image = makeImage(&e->host, port.format, port.width, port.height, usage | VK_IMAGE_USAGE_STORAGE_BIT);
   const WeirImage binding = {.size = sizeof binding,
                              .name = name,
                              .slot = slot,
@@ -143,10 +142,8 @@ static void makeSlots(Engine* e) {
     const VkFenceCreateInfo fence = {.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO,
                                      .flags = VK_FENCE_CREATE_SIGNALED_BIT};
     VK(vkCreateFence(e->host.device, &fence, NULL, &slot->fence));
-    slot->motion =
-        makePortImage(e, kProvided[0], s, VK_IMAGE_USAGE_TRANSFER_DST_BIT, kCleared, kCleared);
-    slot->picture =
-        makePortImage(e, kExternal[0], s, VK_IMAGE_USAGE_TRANSFER_SRC_BIT, kNothing, kCopiedFrom);
+    slot->motion = makePortImage(e, kProvided[0], s, VK_IMAGE_USAGE_TRANSFER_DST_BIT, kCleared, kCleared);
+    slot->picture = makePortImage(e, kExternal[0], s, VK_IMAGE_USAGE_TRANSFER_SRC_BIT, kNothing, kCopiedFrom);
   }
   const Image* picture = &e->slots[0].picture;
   e->composed = makeImage(&e->host, picture->format, picture->width + 2 * kBorder, picture->height + 2 * kBorder,
@@ -183,7 +180,8 @@ static void recordCompose(const Engine* e, const Slot* slot) {
                             .dstSubresource = layer,
                             .dstOffset = {kBorder, kBorder, 0},
                             .extent = {slot->picture.width, slot->picture.height, 1}};
-  vkCmdCopyImage(slot->commands, slot->picture.image, kCopiedFrom.layout, e->composed.image, kCopiedTo.layout, 1, &copy);
+  vkCmdCopyImage(slot->commands, slot->picture.image, kCopiedFrom.layout, e->composed.image, kCopiedTo.layout, 1,
+                 &copy);
   barrier(slot->commands, &e->composed, kCopiedTo, kCopiedFrom);
 }
 
