@@ -163,9 +163,9 @@ void WeirGraph::record(VkCommandBuffer commands, const execute::FrameInput& inpu
   recorded |= 1u << slot;
   try {
     runtime->record(commands, input, slot, stamps);
-  } catch (...) {
+  } catch (const std::exception& error) {
     frame.forget();  // the host throws these commands away, and what they would have kept
-    throw;
+    throw RuntimeError(error.what());
   }
   hostBarrier(commands, slot, false);
   replaced = false;

@@ -9,6 +9,8 @@
 //   otherwise. Texts are UTF-8, copied; arrays of texts come as pointer and count.
 // - A Weir and everything made from it is for one thread at a time. Different Weirs know nothing of each other.
 // - Objects are destroyed before the one that they were made from, else WEIR_IN_USE, and nothing has happened.
+// Destroying
+//   NULL is fine.
 // - weirRecord touches no queue, waits for nothing and submits nothing. What creates or changes an object may submit to
 //   the queue and wait for that: the host's other threads must leave the queue alone meanwhile.
 #ifndef WEIR_EMBED_H
@@ -84,8 +86,9 @@ VkPhysicalDeviceFeatures2* weirNeededFeatures(WeirNeeds* needs);
 WeirTexts weirNeededExtensions(const WeirNeeds* needs);
 WeirStatus weirDestroyNeeds(WeirNeeds* needs);
 
-/* InputError, so WEIR_BAD_INPUT, when the device was made without Weir's minimum. */
+/* WEIR_BAD_INPUT when the device was made without Weir's minimum. */
 WeirStatus weirCreateContext(Weir* weir, const WeirHost* host, WeirContext** context);
+/* Waits until the device is idle. */
 WeirStatus weirDestroyContext(WeirContext* context);
 
 /* ------------------------------------------------------------------------------------------------------ scene */
@@ -212,7 +215,8 @@ typedef struct WeirFrame {
 } WeirFrame;
 
 /* Records the node, outside of a render pass, into a buffer that is submitted once, to the context's queue, in the
-   order in which the frames of a graph were recorded. */
+   order in which the frames of a graph were recorded. On WEIR_BAD_INPUT nothing was recorded; on WEIR_FAILED the buffer
+   is to be thrown away. */
 WeirStatus weirRecord(WeirGraph* graph, VkCommandBuffer commands, const WeirFrame* frame);
 
 /* Lines: names of the passes that run, in order. `queries`, when not NULL: how many a frame's timestamps take. */
