@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# clang-format 14 over every C++ file that git knows (GLSL is laid out by hand).
+# clang-format 14 over every C and C++ file that git knows (GLSL is laid out by hand).
 #
 #   tools/format.sh            mends them
 #   tools/format.sh --check    only says what is wrong (exit status 1 if anything is)
@@ -14,4 +14,4 @@ case "$version" in
 esac
 mode=(-i)
 [ "${1:-}" != --check ] || mode=(--dry-run -Werror)
-git ls-files -z --cached --others --exclude-standard -- '*.cpp' '*.h' | xargs -0 -r -P2 -n40 "$format" "${mode[@]}"
+git ls-files -z --cached --others --exclude-standard -- '*.cpp' '*.c' '*.h' | xargs -0 -r -P2 -n40 "$format" "${mode[@]}"

@@ -132,6 +132,8 @@ Kernel Preparing::rayKernel(const std::string& file, const KernelOptions& option
 
 Kernel Preparing::rasterKernel(const std::string& file, const std::string& target, const KernelOptions& options) {
   const graph::CompiledPass& pass = runtime_.compiled();
+  if (!pass.description->draws)
+    throw InputError(fmt::format("{} ({}) rasterises but doesn't declare it", pass.name, pass.type));
   if (!runtime_.device().capabilities().graphics) {
     throw InputError(fmt::format("{} ({}) rasterises, and {} has no graphics queue", pass.name, pass.type,
                                  runtime_.device().info().name));

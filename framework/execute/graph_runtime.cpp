@@ -180,10 +180,10 @@ void GraphRuntime::record(VkCommandBuffer commands, const FrameInput& input, uin
   const auto stamp = [&](size_t query) {
     if (stamps.queries != VK_NULL_HANDLE)
       vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, stamps.queries,
-                           static_cast<uint32_t>(query));
+                           stamps.firstQuery + static_cast<uint32_t>(query));
   };
   if (stamps.queries != VK_NULL_HANDLE)
-    vkCmdResetQueryPool(commands, stamps.queries, 0, static_cast<uint32_t>(passes_.size() + 2));
+    vkCmdResetQueryPool(commands, stamps.queries, stamps.firstQuery, static_cast<uint32_t>(passes_.size() + 2));
   stamp(0);
   device_.beginLabel(commands, graph_.name.c_str());
   scene_.begin(commands, input, slot, graph_.width, graph_.height);

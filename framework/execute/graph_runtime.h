@@ -24,6 +24,7 @@ struct ExecutorOptions {
 struct Stamps {
   VkQueryPool queries = VK_NULL_HANDLE;  ///< passes + 2: start, start of the first pass, end of each
   std::span<double> cpu;                 ///< milliseconds that recording each pass took
+  uint32_t firstQuery = 0;               ///< where in the pool
 };
 
 class GraphRuntime {
@@ -48,6 +49,9 @@ class GraphRuntime {
   /// InputError when there is no such resource.
   void setExternal(const std::string& name, uint32_t slot, Storage storage);
 
+  /// InputError when one of the host's resources is missing for that slot. `record` asks first.
+  void checkExternals(uint32_t slot) const;
+
   /// The commands of one frame. `slot` < SceneFrame::kSlots: the last frame recorded for it must be done.
   void record(VkCommandBuffer commands, const FrameInput& input, uint32_t slot, const Stamps& stamps);
 
@@ -63,7 +67,6 @@ class GraphRuntime {
     std::vector<VkImageMemoryBarrier2> images;
   };
   void makeBarriers();
-  void checkExternals(uint32_t slot) const;
   void clearHistory(VkCommandBuffer commands);
   void beforePass(VkCommandBuffer commands, size_t pass) const;
   void poisonAround(VkCommandBuffer commands, uint32_t pass, bool before) const;

@@ -1,11 +1,13 @@
 // Creating and destroying the device, and the small services around it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <weir/core/cache_folder.h>
 #include <weir/core/error.h>
 #include <weir/gpu/device.h>
 #include <weir/gpu/probe.h>
 #include <weir/gpu/vma.h>
 
+#include <algorithm>
 #include <mutex>
 
 namespace weir::gpu {
@@ -52,6 +54,30 @@ Device::Device(const DeviceOptions& options)
   }
 }
 
+Device::Device(const HostDevice& host)
+    : owned_(false), messages_(std::make_unique<Messages>()), immediate_(std::make_unique<Immediate>()) {
+  if (host.instance == VK_NULL_HANDLE || host.physical == VK_NULL_HANDLE || host.device == VK_NULL_HANDLE ||
+      host.queue == VK_NULL_HANDLE)
+    throw InputError("the host's instance, physical device, device and queue must all be given");
+  info_ = inspect(host);
+  if (!info_.missing.empty())
+    throw InputError(
+        fmt::format("the host's device ({}) cannot run Weir: it lacks {}", info_.name, fmt::join(info_.missing, ", ")));
+  instance_ = host.instance;
+  physical_ = host.physical;
+  device_ = host.device;
+  queue_ = host.queue;
+  queueFamily_ = host.queueFamily;
+  debugUtils_ = hasDebugUtils() &&
+                std::ranges::count(host.instanceExtensions, std::string(VK_EXT_DEBUG_UTILS_EXTENSION_NAME)) > 0;
+  try {
+    createServices(host.pipelineCacheFolder);
+  } catch (...) {
+    destroy();
+    throw;
+  }
+}
+
 Device::~Device() {
   destroy();
 }
@@ -66,7 +92,8 @@ void Device::create(const DeviceOptions& options) {
       .pfnUserCallback = &Device::receive,
       .pUserData = messages_.get()};
   instance_ = createInstance(options.validation, &messenger);
-  if (options.validation && hasDebugUtils()) {
+  debugUtils_ = hasDebugUtils();
+  if (options.validation && debugUtils_) {
     check(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_),
           "vkCreateDebugUtilsMessengerEXT");
   }
@@ -76,8 +103,13 @@ void Device::create(const DeviceOptions& options) {
   physical_ = chosen.physical;
   queueFamily_ = chosen.queueFamily;
   createHandle();
+  createServices(options.cacheFolder);
+}
+
+/// What Weir puts beside the device, whoever's it is.
+void Device::createServices(const std::string& cache) {
   createAllocator();
-  cacheFolder_ = cacheFolder(options.cacheFolder);
+  cacheFolder_ = cacheFolder(cache);
   pipelineCache_ = loadPipelineCache(device_, physical_, cacheFolder_);
   const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                      .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
@@ -89,10 +121,8 @@ void Device::create(const DeviceOptions& options) {
 
 void Device::createHandle() {
   const Capabilities& has = info_.capabilities;
-  FeatureChain supported(has.accelerationStructure, has.rayPipeline, has.rayQuery);
   FeatureChain wanted(has.accelerationStructure, has.rayPipeline, has.rayQuery);
-  vkGetPhysicalDeviceFeatures2(physical_, &supported.core);
-  for (const FeatureRule& rule : featureRules()) rule.field(wanted) = rule.field(supported);
+  wantFeatures(physical_, has, wanted);
 
   const std::vector<const char*> extensions = deviceExtensions(has);
   const float priority = 1.0f;
@@ -134,14 +164,15 @@ void Device::destroy() noexcept {
     vkDestroyCommandPool(device_, immediatePool_, nullptr);
     vkDestroyPipelineCache(device_, pipelineCache_, nullptr);
     if (allocator_) vmaDestroyAllocator(allocator_);
-    vkDestroyDevice(device_, nullptr);
+    if (owned_) vkDestroyDevice(device_, nullptr);
   }
+  if (!owned_) return;
   if (messenger_) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
   if (instance_) vkDestroyInstance(instance_, nullptr);
 }
 
 void Device::name(VkObjectType type, uint64_t handle, const std::string& name) const {
-  if (!hasDebugUtils() || handle == 0) return;
+  if (!debugUtils_ || handle == 0) return;
   const VkDebugUtilsObjectNameInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
                                            .objectType = type,
                                            .objectHandle = handle,
@@ -150,13 +181,13 @@ void Device::name(VkObjectType type, uint64_t handle, const std::string& name) c
 }
 
 void Device::beginLabel(VkCommandBuffer commands, const char* name) const {
-  if (!hasDebugUtils()) return;
+  if (!debugUtils_) return;
   const VkDebugUtilsLabelEXT label{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = name};
   vkCmdBeginDebugUtilsLabelEXT(commands, &label);
 }
 
 void Device::endLabel(VkCommandBuffer commands) const {
-  if (hasDebugUtils()) vkCmdEndDebugUtilsLabelEXT(commands);
+  if (debugUtils_) vkCmdEndDebugUtilsLabelEXT(commands);
 }
 
 void Device::submitAndWait(const std::function<void(VkCommandBuffer)>& record) const {

@@ -20,6 +20,21 @@ struct DeviceOptions {
   std::string cacheFolder;  ///< for the pipeline cache; empty: as `shader::Compiler`; "-": none
 };
 
+/// A device that somebody else made and owns, and what it was made with. It must outlive whatever adopts it.
+struct HostDevice {
+  PFN_vkGetInstanceProcAddr loader = nullptr;  ///< where the host has Vulkan from; none: libvulkan.so.1
+  VkInstance instance = VK_NULL_HANDLE;
+  uint32_t apiVersion = 0;  ///< VkApplicationInfo::apiVersion of the instance
+  std::vector<std::string> instanceExtensions;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;
+  uint32_t queueFamily = 0;
+  const VkPhysicalDeviceFeatures2* features = nullptr;  ///< as in VkDeviceCreateInfo::pNext; read at once
+  std::vector<std::string> extensions;
+  std::string pipelineCacheFolder;  ///< as cacheFolder in DeviceOptions
+};
+
 /// What a device offers beyond Weir's minimum.
 struct Capabilities {
   bool accelerationStructure = false, rayPipeline = false, rayQuery = false;
@@ -37,12 +52,39 @@ struct DeviceInfo {
   std::string name, driver;  ///< driver: name and version in words
   std::string kind;          ///< "discrete", "integrated", "virtual", "cpu", "other"
   uint32_t apiVersion = 0;
-  std::vector<std::string> missing;  ///< of Weir's minimum; empty: usable
+  std::vector<std::string> missing;                           ///< of Weir's minimum; empty: usable
+  std::vector<std::string> missingForRays, missingForRaster;  ///< of what passes need that trace, or rasterise
   Capabilities capabilities;
 };
 
 /// Every Vulkan device of this machine, usable or not. Throws RuntimeError when there is no Vulkan at all.
 std::vector<DeviceInfo> listDevices();
+
+/// What a host's device was made with, seen as `listDevices` sees those of the machine. No device is needed for it,
+/// only instance and physical device. Throws RuntimeError when there is no Vulkan, or not the host's.
+DeviceInfo inspect(const HostDevice& host);
+
+/// What a host should make its device with, so that it runs everything that its physical device can.
+class HostNeeds {
+ public:
+  /// Looks at loader, instance and physical device alone. Throws as inspect() does.
+  explicit HostNeeds(const HostDevice& host);
+  ~HostNeeds();
+  HostNeeds(const HostNeeds&) = delete;
+  HostNeeds& operator=(const HostNeeds&) = delete;
+
+  /// A chain for VkDeviceCreateInfo::pNext, in which the host may switch on more. Lives as long as this.
+  VkPhysicalDeviceFeatures2* features();
+  const std::vector<const char*>& extensions() const { return extensions_; }
+  /// With what the physical device lacks of Weir's minimum, whatever is switched on.
+  const DeviceInfo& info() const { return info_; }
+
+ private:
+  struct Chain;
+  std::unique_ptr<Chain> chain_;
+  std::vector<const char*> extensions_;
+  DeviceInfo info_;
+};
 
 /// A message of the validation layers.
 struct ValidationMessage {
@@ -55,6 +97,9 @@ class Device {
   /// Throws InputError when no device fits `choice` (naming those there are), or the chosen one lacks something (naming
   /// what).
   explicit Device(const DeviceOptions& options);
+  /// Works on a device of somebody else's; frees nothing of it. InputError naming what it lacks of Weir's minimum. Only
+  /// submitAndWait and the destructor touch the queue.
+  explicit Device(const HostDevice& host);
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -69,7 +114,8 @@ class Device {
   VmaAllocator allocator() const { return allocator_; }
   VkPipelineCache pipelineCache() const { return pipelineCache_; }
 
-  /// Gives a Vulkan object its name in captures and messages. No-op without VK_EXT_debug_utils.
+  /// Gives a Vulkan object its name in captures and messages. No-op where the instance lacks
+  /// VK_EXT_debug_utils.
   void name(VkObjectType type, uint64_t handle, const std::string& name) const;
   void beginLabel(VkCommandBuffer commands, const char* name) const;
   void endLabel(VkCommandBuffer commands) const;
@@ -90,8 +136,11 @@ class Device {
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
   void create(const DeviceOptions& options);
   void createHandle();
+  void createServices(const std::string& cache);
   void createAllocator();
   void destroy() noexcept;
+  bool owned_ = true;        ///< instance and device are to be destroyed here
+  bool debugUtils_ = false;  ///< the instance has VK_EXT_debug_utils
   DeviceInfo info_;
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;

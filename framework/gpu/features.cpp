@@ -83,6 +83,12 @@ const std::vector<FeatureRule>& featureRules() {
 
 #undef WEIR_FEATURE
 
+void wantFeatures(VkPhysicalDevice physical, const Capabilities& has, FeatureChain& chain) {
+  FeatureChain supported(has.accelerationStructure, has.rayPipeline, has.rayQuery);
+  vkGetPhysicalDeviceFeatures2(physical, &supported.core);
+  for (const FeatureRule& rule : featureRules()) rule.field(chain) = rule.field(supported);
+}
+
 std::vector<const char*> deviceExtensions(const Capabilities& capabilities) {
   std::vector<const char*> names;
   if (capabilities.accelerationStructure) {

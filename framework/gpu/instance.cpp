@@ -35,10 +35,15 @@ bool instanceExtensionAvailable(const char* name) {
 }
 
 /// volk's loader keeps its state in globals, so once per process; a failure is remembered, not retried.
-void loadVulkanLibrary() {
+void loadVulkanLibrary(PFN_vkGetInstanceProcAddr loader) {
   static std::once_flag once;
   static VkResult result = VK_SUCCESS;
-  std::call_once(once, [] { result = volkInitialize(); });
+  std::call_once(once, [loader] {
+    if (loader != nullptr)
+      volkInitializeCustom(loader);
+    else
+      result = volkInitialize();
+  });
   if (result != VK_SUCCESS) {
     throw RuntimeError("There is no Vulkan on this machine: libvulkan.so.1 cannot be loaded (Debian: libvulkan1).");
   }
@@ -47,9 +52,9 @@ void loadVulkanLibrary() {
 /// Function pointers come from the first instance and serve every later one: the loader hands out trampolines that find
 /// the driver by the handle they are called with. volkLoadDevice would tie them to one device's driver instead, and
 /// loading them again for each instance would write to globals that other threads are calling through.
+std::once_flag functionsOnce;
 void loadFunctions(VkInstance instance) {
-  static std::once_flag once;
-  std::call_once(once, [instance] { volkLoadInstance(instance); });
+  std::call_once(functionsOnce, [instance] { volkLoadInstance(instance); });
 }
 
 }  // namespace
@@ -58,8 +63,25 @@ bool hasDebugUtils() {
   return debugUtils;
 }
 
+void loadVulkan(PFN_vkGetInstanceProcAddr loader) {
+  loadVulkanLibrary(loader);
+  // Asked for what needs no instance, two ways into one loader give the same address.
+  if (loader != nullptr && loader(nullptr, "vkCreateInstance") != vkGetInstanceProcAddr(nullptr, "vkCreateInstance"))
+    throw RuntimeError(
+        "the host's vkGetInstanceProcAddr belongs to another Vulkan loader than the one this process uses Weir with");
+  // The host's instance may lack extensions that a later one has, and pointers are fetched only once: so they come from
+  // an instance of Weir's own, which has them all and need not stay.
+  static std::mutex mutex;
+  static bool loaded = false;
+  const std::lock_guard lock(mutex);
+  if (loaded) return;
+  const VkInstance instance = createInstance(false, nullptr);  // fills in vkDestroyInstance, too
+  vkDestroyInstance(instance, nullptr);
+  loaded = true;
+}
+
 VkInstance createInstance(bool validation, const VkDebugUtilsMessengerCreateInfoEXT* messages) {
-  loadVulkanLibrary();
+  loadVulkanLibrary(nullptr);
   static constexpr const char* kLayer = "VK_LAYER_KHRONOS_validation";
   if (validation && !layerInstalled(kLayer)) {
     throw InputError(

@@ -114,29 +114,6 @@ void readFeatures(Probe& probe, const DeviceOptions& options) {
              chain.v12.descriptorBindingSampledImageUpdateAfterBind);
 }
 
-Probe probeDevice(VkPhysicalDevice physical, uint32_t index, const DeviceOptions& options) {
-  Probe probe{.physical = physical};
-  VkPhysicalDeviceProperties properties;
-  vkGetPhysicalDeviceProperties(physical, &properties);
-  probe.info.index = index;
-  probe.info.name = properties.deviceName;
-  probe.info.kind = kindName(properties.deviceType);
-  probe.info.apiVersion = properties.apiVersion;
-  probe.info.driver = fmt::format("driver {:#x}", properties.driverVersion);
-  Capabilities& capabilities = probe.info.capabilities;
-  capabilities.graphics = false;
-  capabilities.timestampPeriod = properties.limits.timestampPeriod;
-  capabilities.maxStorageBufferRange = properties.limits.maxStorageBufferRange;
-  if (!findQueueFamily(probe)) probe.info.missing.push_back("a queue that computes");
-  // Older devices don't know the structures that the rest would ask for.
-  if (properties.apiVersion < VK_API_VERSION_1_3) {
-    probe.info.missing.push_back(fmt::format("Vulkan 1.3 (it has {})", versionText(properties.apiVersion)));
-  } else {
-    readFeatures(probe, options);
-  }
-  return probe;
-}
-
 std::string lowered(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
@@ -161,6 +138,29 @@ int rank(const Probe& probe) {
 }
 
 }  // namespace
+
+Probe probeDevice(VkPhysicalDevice physical, uint32_t index, const DeviceOptions& options) {
+  Probe probe{.physical = physical};
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(physical, &properties);
+  probe.info.index = index;
+  probe.info.name = properties.deviceName;
+  probe.info.kind = kindName(properties.deviceType);
+  probe.info.apiVersion = properties.apiVersion;
+  probe.info.driver = fmt::format("driver {:#x}", properties.driverVersion);
+  Capabilities& capabilities = probe.info.capabilities;
+  capabilities.graphics = false;
+  capabilities.timestampPeriod = properties.limits.timestampPeriod;
+  capabilities.maxStorageBufferRange = properties.limits.maxStorageBufferRange;
+  if (!findQueueFamily(probe)) probe.info.missing.push_back("a queue that computes");
+  // Older devices don't know the structures that the rest would ask for.
+  if (properties.apiVersion < VK_API_VERSION_1_3) {
+    probe.info.missing.push_back(fmt::format("Vulkan 1.3 (it has {})", versionText(properties.apiVersion)));
+  } else {
+    readFeatures(probe, options);
+  }
+  return probe;
+}
 
 std::vector<Probe> probeDevices(VkInstance instance, const DeviceOptions& options) {
   uint32_t count = 0;

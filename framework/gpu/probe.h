@@ -27,6 +27,10 @@ struct FeatureChain {
   VkPhysicalDeviceRayQueryFeaturesKHR rayQueries{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR};
 };
 
+/// What a chain in the host's own structures, of any version or extension, switches on. Those that are not there are
+/// off.
+void takeEnabled(const VkPhysicalDeviceFeatures2* enabled, FeatureChain& chain);
+
 /// A feature by its name and its place. Weir cannot do without the required ones; the others are taken where they
 /// exist.
 struct FeatureRule {
@@ -35,6 +39,8 @@ struct FeatureRule {
   VkBool32& (*field)(FeatureChain&);
 };
 const std::vector<FeatureRule>& featureRules();
+/// Switches on everything that the device has of them. `chain` is made for the same capabilities.
+void wantFeatures(VkPhysicalDevice physical, const Capabilities& has, FeatureChain& chain);
 
 /// A physical device, what it has, and which queue family Weir would take.
 struct Probe {
@@ -43,12 +49,19 @@ struct Probe {
   uint32_t queueFamily = 0;
 };
 
+/// Sees to it that Vulkan's entry points are there and that they are those of `loader`, when it is given. RuntimeError
+/// when there is no Vulkan, or when the process has it from another loader already.
+void loadVulkan(PFN_vkGetInstanceProcAddr loader);
+
 /// Loads the Vulkan library once per process and creates an instance. RuntimeError when there is no Vulkan or no
 /// driver. `messages`, when given, also hears about the instance's own creation; it needs `validation`.
 VkInstance createInstance(bool validation, const VkDebugUtilsMessengerCreateInfoEXT* messages);
 
 /// Whether instances get VK_EXT_debug_utils (object names and labels). Only after `createInstance`.
 bool hasDebugUtils();
+
+/// Looks at one physical device: what it could do. `options` hides what the user wants hidden.
+Probe probeDevice(VkPhysicalDevice physical, uint32_t index, const DeviceOptions& options);
 
 /// Looks at every physical device. `options` hides what the user wants hidden.
 std::vector<Probe> probeDevices(VkInstance instance, const DeviceOptions& options);

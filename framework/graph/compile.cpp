@@ -107,10 +107,10 @@ CompiledGraph compileFile(const std::string& path, const Overrides& overrides, c
   return compileFile(path, overrides, catalog, options);
 }
 
-CompiledGraph compileFile(const std::string& path, const Overrides& overrides, const PassCatalog& catalog,
-                          const CompileOptions& options) {
-  std::vector<Diagnostic> diagnostics;
-  Description description = load(path, diagnostics);
+namespace {
+
+CompiledGraph compileOrThrow(Description description, const Overrides& overrides, const PassCatalog& catalog,
+                             const CompileOptions& options, std::vector<Diagnostic> diagnostics) {
   apply(description, overrides, diagnostics);
   CompiledGraph graph = compile(description, catalog, options, diagnostics);
   if (diagnostics.empty()) return graph;
@@ -119,6 +119,22 @@ CompiledGraph compileFile(const std::string& path, const Overrides& overrides, c
     return std::tie(a.file, a.line) < std::tie(b.file, b.line);
   });
   throw GraphError(std::move(diagnostics));
+}
+
+}  // namespace
+
+CompiledGraph compileFile(const std::string& path, const Overrides& overrides, const PassCatalog& catalog,
+                          const CompileOptions& options) {
+  std::vector<Diagnostic> diagnostics;
+  Description description = load(path, diagnostics);
+  return compileOrThrow(std::move(description), overrides, catalog, options, std::move(diagnostics));
+}
+
+CompiledGraph compileText(const std::string& json, const std::string& file, const Overrides& overrides,
+                          const PassCatalog& catalog, const CompileOptions& options) {
+  std::vector<Diagnostic> diagnostics;
+  Description description = parse(json, file, diagnostics);
+  return compileOrThrow(std::move(description), overrides, catalog, options, std::move(diagnostics));
 }
 
 }  // namespace weir::graph

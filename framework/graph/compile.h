@@ -163,6 +163,10 @@ CompiledGraph compileFile(const std::string& path, const Overrides& overrides, c
 CompiledGraph compileFile(const std::string& path, const Overrides& overrides, const PassCatalog& catalog,
                           uint32_t width, uint32_t height);
 
+/// The same from the JSON itself; `file` stands for it in messages.
+CompiledGraph compileText(const std::string& json, const std::string& file, const Overrides& overrides,
+                          const PassCatalog& catalog, const CompileOptions& options);
+
 /// What a resource asks of the memory it lies in.
 struct MemoryNeed {
   uint64_t bytes = 0, alignment = 1;  ///< alignment: a power of two

@@ -55,6 +55,7 @@ class Planner {
     pass.description = node.type;
     pass.params = node.params;
     pass.stages = node.type->has(Need::SceneAcceleration) ? kRayStage : kComputeStage;
+    if (node.type->draws) pass.stages |= kRasterStage;
     const uint64_t hash = fnv1a(node.name());
     pass.stream = static_cast<uint32_t>(hash ^ (hash >> 32));
     for (uint32_t o = 0; o < node.type->outputs.size(); ++o) {

@@ -160,6 +160,11 @@ PassDescription& PassDescription::needsPrevious(Need need) {
   return *this;
 }
 
+PassDescription& PassDescription::rasterises() {
+  draws = true;
+  return *this;
+}
+
 bool PassDescription::has(Need need, bool previous) const {
   return std::any_of(wants.begin(), wants.end(),
                      [&](const NeedDescription& want) { return want.need == need && want.previous == previous; });

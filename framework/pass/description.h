@@ -209,6 +209,7 @@ class PassDescription {
   Param param(std::string name, const char* value);
   PassDescription& needs(Need need);
   PassDescription& needsPrevious(Need need);
+  PassDescription& rasterises();  ///< has a rasterKernel: asks for a queue that draws
 
   bool has(Need need, bool previous = false) const;
   const PortDescription* findInput(std::string_view name) const;
@@ -224,6 +225,7 @@ class PassDescription {
   std::vector<PortDescription> inputs, outputs;
   std::vector<ParamDescription> params;
   std::vector<NeedDescription> wants;
+  bool draws = false;  ///< rasterises()
 };
 
 /// Whether an output's resource can be read through an input, element counts aside (those are compared in the compiled

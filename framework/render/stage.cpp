@@ -123,13 +123,17 @@ Player::Player(const Stage& stage) : stage_(stage) {
 }
 
 execute::FrameInput Player::frame(uint32_t number, uint32_t seed) {
+  return frameAt(stage_.playback ? stage_.playback->time(number) : 0.0, number, seed);
+}
+
+execute::FrameInput Player::frameAt(double seconds, uint32_t number, uint32_t seed) {
   execute::FrameInput input;
   input.camera = stage_.camera;
   input.index = number;
   input.seed = seed;
   if (!stage_.playback) return input;
   const scene::Clip& clip = stage_.scene.clips[stage_.playback->clip];
-  const scene::Pose pose = scene::evaluate(stage_.scene, clip, scene::wrapped(clip, stage_.playback->time(number)));
+  const scene::Pose pose = scene::evaluate(stage_.scene, clip, scene::wrapped(clip, seconds));
   input.camera = scene::posed(stage_.camera, pose);
   if (states_) {
     state_ = states_->at(pose);

@@ -55,6 +55,8 @@ class Player {
   explicit Player(const Stage& stage);
   /// The input for a frame's number; valid until the next call.
   execute::FrameInput frame(uint32_t number, uint32_t seed);
+  /// The same at a moment of the clip's, in seconds.
+  execute::FrameInput frameAt(double seconds, uint32_t number, uint32_t seed);
 
  private:
   const Stage& stage_;

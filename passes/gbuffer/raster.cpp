@@ -18,7 +18,7 @@ void describeGBuffer(PassDescription& d) {
 }
 
 void Raster::describe(PassDescription& d) {
-  d.doc("First visible surfaces by rasterisation; needs no ray tracing");
+  d.doc("First visible surfaces by rasterisation; needs no ray tracing").rasterises();
   describeGBuffer(d);
 }
 

@@ -9,6 +9,7 @@ using execute::KernelKind;
 /// What the test's pass does in prepare() and record().
 std::function<void(PrepareContext&)> onPrepare;
 std::function<void(RecordContext&)> onRecord;
+bool declaresDrawing = false;
 
 class Scripted final : public Pass {
  public:
@@ -17,6 +18,7 @@ class Scripted final : public Pass {
     d.output("to", perPixel<Word>());
     d.param("amount", 2).range(0, 9);
     d.needs(Need::FrameIndex);
+    if (declaresDrawing) d.rasterises();
   }
   void prepare(PrepareContext& c) override { onPrepare(c); }
   void record(RecordContext& c) override {
@@ -52,7 +54,11 @@ TEST(Contexts, AskingForWhatIsNotDeclaredNamesPassAndName) {
   expectWords(thrown([](PrepareContext& c) { (void)c.connected("perhaps"); }), {"it", "own.Scripted", "'perhaps'"});
   expectWords(thrown([](PrepareContext& c) { (void)c.rayKernel("any.glsl"); }),
               {"it", "own.Scripted", "scene.acceleration"});
+  expectWords(thrown([](PrepareContext& c) { (void)c.rasterKernel("any.glsl", "nowhere"); }),
+              {"it", "own.Scripted", "rasterises"});
+  declaresDrawing = true;
   expectWords(thrown([](PrepareContext& c) { (void)c.rasterKernel("any.glsl", "nowhere"); }), {"it", "nowhere"});
+  declaresDrawing = false;
   expectWords(thrown([](PrepareContext&) {}, [](RecordContext& c) { c.launch(Kernel{}); }),
               {"it", "own.Scripted", "never prepared"});
 }

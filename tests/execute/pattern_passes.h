@@ -104,7 +104,7 @@ class Pattern final : public Pass {
     d.output("faults", perPixel<Faults>());
     d.needs(Need::FrameIndex);
     if (type().work == PatternType::Rays) d.needs(Need::SceneAcceleration);
-    if (type().work == PatternType::Raster) d.needs(Need::SceneGeometry).needs(Need::SceneMaterials);
+    if (type().work == PatternType::Raster) d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).rasterises();
   }
   void prepare(PrepareContext& c) override {
     if (type().work == PatternType::Raster) {

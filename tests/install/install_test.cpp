@@ -102,9 +102,9 @@ TEST_F(Installed, HoldsWhatItShouldAndNoPathOfItsOrigin) {
   for (const char* file :
        {"bin/weir", "lib/libweir.so", "lib/weir/libweir_output.so", "lib/weir/weir_output.json",
         "lib/weir/shaders/common/trace.glsl", "lib/weir/shaders/output/tonemap.glsl", "include/weir/pass/plugin.h",
-        "include/weir/passes/common/layouts.h", "share/weir/graphs/restir_di.json", "share/weir/scenes/cornell.glb",
-        "lib/cmake/weir/weirConfig.cmake", "lib/cmake/weir/weirConfigVersion.cmake", "lib/cmake/weir/weirTargets.cmake",
-        "lib/cmake/weir/weir_plugin.cmake"})
+        "include/weir/embed/embed.h", "include/weir/passes/common/layouts.h", "share/weir/graphs/restir_di.json",
+        "share/weir/scenes/cornell.glb", "lib/cmake/weir/weirConfig.cmake", "lib/cmake/weir/weirConfigVersion.cmake",
+        "lib/cmake/weir/weirTargets.cmake", "lib/cmake/weir/weir_plugin.cmake"})
     EXPECT_TRUE(fs::is_regular_file(prefix() / file)) << file;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(prefix())) {
     EXPECT_FALSE(entry.is_symlink()) << entry.path();
@@ -179,6 +179,16 @@ TEST_F(Installed, TheExampleIsBuiltAndDoesWhatItSays) {
   expectDone(std::string(TEST_CMAKE) + " --install " + (project / "build").string() + " --prefix " + prefix().string());
   const Ran found = weir("passes");
   EXPECT_TRUE(has(found.out, "letterbox.Bars")) << found.out << found.err;
+}
+
+TEST_F(Installed, AHostInCIsBuiltAndRendersAGraphOnItsOwnDevice) {
+  const fs::path project = root() / "host", picture = root() / "picture.pfm";
+  fs::copy(sourcePath("examples/embed"), project, fs::copy_options::recursive);
+  build(project, prefix());
+  const std::string share = (prefix() / "share/weir").string();
+  expectDone((project / "build/weir_embed_example").string() + " " + share + "/graphs/restir_di.json " + share +
+             "/scenes/cornell.glb " + picture.string() + " --size 16x16 --frames 2");
+  EXPECT_EQ(fs::file_size(picture), std::string("PF\n24 24\n-1.0\n").size() + size_t{3} * 4 * 24 * 24);
 }
 
 TEST_F(Installed, APluginOfAnotherReleaseIsRefusedByName) {
