@@ -2,6 +2,7 @@
 #include <weir/core/error.h>
 #include <weir/execute/executor.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <limits>
@@ -21,15 +22,24 @@ Executor::Executor(const gpu::Device& device, shader::Compiler& compiler, Regist
                    const scene::SceneGpu& scene, graph::CompiledGraph graph, const ExecutorOptions& options)
     : device_(device),
       options_(options),
-      services_{&device, &compiler, &registry, &pipelines_},
+      services_{&device, &compiler, &registry, &pipelines_, &shaderFiles_},
       scene_(device, compiler, scene),
       source_(std::move(graph)) {
   runtime_ = std::make_unique<GraphRuntime>(services_, scene_, source_, options_);
-  makeSlots();
+  try {
+    makeSlots();
+  } catch (...) {
+    freeSlots();
+    throw;
+  }
 }
 
 Executor::~Executor() {
   vkDeviceWaitIdle(device_.handle());
+  freeSlots();
+}
+
+void Executor::freeSlots() {
   for (Slot& s : slots_) {
     vkDestroyQueryPool(device_.handle(), s.queries, nullptr);
     vkDestroyFence(device_.handle(), s.fence, nullptr);
@@ -79,22 +89,26 @@ void Executor::swap(graph::CompiledGraph graph) {
     source_ = std::move(graph);
     return;
   }
-  replace(std::move(graph));
+  restart(std::move(graph));
 }
 
-void Executor::reloadShaders() {
-  replace(source_);
-}
-
-void Executor::replace(graph::CompiledGraph graph) {
+void Executor::restart(graph::CompiledGraph graph) {
   const bool resized = graph.width != source_.width || graph.height != source_.height;
-  auto next = std::make_unique<GraphRuntime>(services_, scene_, graph, options_, runtime_.get());
+  std::set<std::string> before = std::exchange(shaderFiles_, {});
+  std::unique_ptr<GraphRuntime> next;
+  try {
+    next = std::make_unique<GraphRuntime>(services_, scene_, graph, options_, runtime_.get());
+  } catch (...) {
+    shaderFiles_.merge(before);  // the graph that goes on has its own
+    throw;
+  }
   finish();  // frames in flight use what is about to go
-  const bool timers = next->graph().passes.size() != runtime_->graph().passes.size();
+  const auto name = [](const graph::CompiledPass& pass) { return pass.name; };
+  const bool samePasses = std::ranges::equal(next->graph().passes, runtime_->graph().passes, {}, name, name);
   runtime_ = std::move(next);
   source_ = std::move(graph);
   if (resized) resetHistory();
-  if (timers) makeTimers();
+  if (!samePasses) makeTimers();  // times are by pass
 }
 
 void Executor::collect(Slot& slot) {

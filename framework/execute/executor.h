@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,8 +38,12 @@ class Executor {
   /// Goes on with another graph, or the same with other parameters or another size. History goes on where pass, type,
   /// layout and size are the same, and is empty elsewhere. When it throws, the graph that was there goes on.
   void swap(graph::CompiledGraph graph);
+  /// The same, and everything is prepared anew whatever changed: for shaders or plugins that were edited.
+  void restart(graph::CompiledGraph graph);
   /// Compiles the shaders anew from their files. When one does not compile it throws, and the old ones go on.
-  void reloadShaders();
+  void reloadShaders() { restart(source_); }
+  /// Every file that shaders were read from; after a swap or reload that failed also those that it looked for.
+  const std::set<std::string>& shaderFiles() const { return shaderFiles_; }
   /// Pipelines that were made so far: what a swap or a reload had to compile.
   uint64_t pipelinesMade() const { return pipelines_.made(); }
 
@@ -53,9 +58,10 @@ class Executor {
   image::Picture read(const std::string& output);
   /// Meaning of an output port: how a PNG must encode it.
   Meaning meaning(const std::string& output) const;
-  /// Raw bytes of a resource ("pass.port") as the last frame left it, and, for tests, putting some in before a frame.
-  /// InputError where somebody else uses the memory: compile the graph with `keep`.
+  /// Raw bytes of a resource ("pass.port") as the last frame left it. InputError where somebody else uses the memory:
+  /// compile the graph with `keep`.
   std::vector<std::byte> readResource(const std::string& name);
+  /// For tests: what a resource holds before the next frame; of one that shares memory, until somebody else takes it.
   void writeResource(const std::string& name, std::span<const std::byte> bytes);
 
   /// Times of finished frames since the last call, oldest first; of the last kTimesKept at most.
@@ -81,8 +87,8 @@ class Executor {
   };
 
   void makeSlots();
+  void freeSlots();
   void makeTimers();
-  void replace(graph::CompiledGraph graph);
   void collect(Slot& slot);
   void record(Slot& slot, uint32_t slotIndex, const FrameInput& input);
   uint32_t resourceNamed(const std::string& name) const;
@@ -92,6 +98,7 @@ class Executor {
   ExecutorOptions options_;
   Services services_;
   PipelineLibrary pipelines_;
+  std::set<std::string> shaderFiles_;
   SceneFrame scene_;
   graph::CompiledGraph source_;  ///< as it was given, without what passes add
   std::unique_ptr<GraphRuntime> runtime_;

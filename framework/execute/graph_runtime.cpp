@@ -35,7 +35,7 @@ bool sameBindings(const std::vector<graph::Binding>& a, const std::vector<graph:
 bool sameResource(const graph::Resource& a, const graph::Resource& b) {
   return a.name == b.name && compatible(a.type, b.type) && a.width == b.width && a.height == b.height &&
          a.elements == b.elements && a.bytes == b.bytes && a.history == b.history && a.external == b.external &&
-         a.firstUse == b.firstUse && a.lastUse == b.lastUse;
+         a.kept == b.kept && a.firstUse == b.firstUse && a.lastUse == b.lastUse;
 }
 
 bool sameOutput(const graph::GraphOutput& a, const graph::GraphOutput& b) {
@@ -51,6 +51,9 @@ GraphRuntime::GraphRuntime(const Services& services, SceneFrame& scene, graph::C
       graph_(std::move(graph)),
       share_(options.shareMemory),
       poison_(options.poison) {
+  // What another runtime added to a graph that was taken from it.
+  std::erase_if(graph_.resources, [](const graph::Resource& r) { return r.scratch; });
+  for (graph::CompiledPass& pass : graph_.passes) pass.scratch.clear();
   shared_.services = services;
   shared_.frame = &scene_;
   shared_.graph = &graph_;
@@ -59,6 +62,7 @@ GraphRuntime::GraphRuntime(const Services& services, SceneFrame& scene, graph::C
   shared_.sceneFolder = options.sceneFolder;
   for (uint32_t p = 0; p < graph_.passes.size(); ++p) {
     passes_.push_back(std::make_unique<PassRuntime>(shared_, p));
+    passes_.back()->prepare();
     graph_.passes[p].stages = passes_.back()->stages();
   }
   // Only now is it known what scratch memory there is and which stages passes run in.
@@ -92,6 +96,9 @@ bool GraphRuntime::update(const graph::CompiledGraph& graph) {
       return false;
   }
   for (size_t p = 0; p < passes_.size(); ++p) passes_[p]->take(graph.passes[p]);
+  graph_.name = graph.name;
+  graph_.file = graph.file;
+  graph_.skipped = graph.skipped;
   return true;
 }
 
@@ -113,9 +120,19 @@ void GraphRuntime::setExternal(const std::string& name, uint32_t slot, Storage s
                                nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)));
 }
 
+/// What the host provides and nobody reads need not be there.
+bool GraphRuntime::needsExternal(uint32_t resource) const {
+  const graph::Resource& r = graph_.resources[resource];
+  if (!r.external || r.producer != graph::kNone) return r.external;
+  return std::any_of(graph_.passes.begin(), graph_.passes.end(), [&](const graph::CompiledPass& pass) {
+    return std::any_of(pass.inputs.begin(), pass.inputs.end(),
+                       [&](const graph::Binding& b) { return b.resource == resource; });
+  });
+}
+
 void GraphRuntime::checkExternals(uint32_t slot) const {
   for (uint32_t r = 0; r < graph_.resources.size(); ++r)
-    if (graph_.resources[r].external && !resources_->external(r, slot))
+    if (needsExternal(r) && !resources_->external(r, slot))
       throw InputError(fmt::format("graph '{}' is recorded without the host's resource '{}' for slot {}", graph_.name,
                                    graph_.resources[r].name, slot));
 }
@@ -187,6 +204,8 @@ void GraphRuntime::record(VkCommandBuffer commands, const FrameInput& input, uin
   stamp(0);
   device_.beginLabel(commands, graph_.name.c_str());
   scene_.begin(commands, input, slot, graph_.width, graph_.height);
+  // What the graph before this one left behind was made visible by its barriers, not by this one's.
+  if (!recorded_) gpu::fullBarrier(commands);
   if (scene_.fresh() || resources_->hasFresh()) clearHistory(commands);
   const FrameCursor cursor{commands, scene_.set(), SceneFrame::constantsOffset(slot), slot, scene_.parity()};
   stamp(1);
@@ -202,17 +221,16 @@ void GraphRuntime::record(VkCommandBuffer commands, const FrameInput& input, uin
     if (p < stamps.cpu.size()) stamps.cpu[p] = milliseconds(start);
   }
   device_.endLabel(commands);
+  // Only now: a frame whose recording threw never was.
   scene_.end();
+  resources_->setCleared();
+  recorded_ = true;
 }
 
 VkPipelineStageFlags2 GraphRuntime::stages() const {
   graph::Stages all = 0;
   for (const graph::CompiledPass& pass : graph_.passes) all |= pass.stages;
   return vulkanStages(all);
-}
-
-std::vector<std::string> GraphRuntime::shaderFiles() const {
-  return {shared_.files.begin(), shared_.files.end()};
 }
 
 }  // namespace weir::execute

@@ -55,10 +55,10 @@ class GraphRuntime {
   /// The commands of one frame. `slot` < SceneFrame::kSlots: the last frame recorded for it must be done.
   void record(VkCommandBuffer commands, const FrameInput& input, uint32_t slot, const Stamps& stamps);
 
+  /// Whether a frame was recorded at all.
+  bool recorded() const { return recorded_; }
   /// The stages that external resources are used in, for the host's own barriers.
   VkPipelineStageFlags2 stages() const;
-  /// Every file that the kernels were compiled from, each once.
-  std::vector<std::string> shaderFiles() const;
 
  private:
   /// The barriers before a pass, ready to be recorded.
@@ -67,6 +67,7 @@ class GraphRuntime {
     std::vector<VkImageMemoryBarrier2> images;
   };
   void makeBarriers();
+  bool needsExternal(uint32_t resource) const;
   void clearHistory(VkCommandBuffer commands);
   void beforePass(VkCommandBuffer commands, size_t pass) const;
   void poisonAround(VkCommandBuffer commands, uint32_t pass, bool before) const;
@@ -78,7 +79,7 @@ class GraphRuntime {
   std::unique_ptr<Resources> resources_;
   std::vector<std::unique_ptr<PassRuntime>> passes_;
   std::vector<Barriers> barriers_;  ///< by pass
-  bool share_, poison_, external_ = false;
+  bool share_, poison_, external_ = false, recorded_ = false;
 };
 
 }  // namespace weir::execute

@@ -8,9 +8,13 @@
 
 namespace weir::execute {
 
-PassRuntime::PassRuntime(Shared& shared, uint32_t index)
-    : shared_(shared), index_(index), pass_(shared.services.registry->create(shared.graph->passes[index].type)) {
+PassRuntime::PassRuntime(Shared& shared, uint32_t index) : shared_(shared), index_(index) {
   const graph::CompiledPass& pass = compiled();
+  Registry& registry = *shared.services.registry;
+  if (registry.find(pass.type) != pass.description)
+    throw RuntimeError(
+        fmt::format("pass '{}': the plugin of '{}' was loaded anew; compile the graph again", pass.name, pass.type));
+  pass_ = registry.create(pass.type);
   const scene::SceneGpu& scene = shared.frame->scene();
   interface_ = {shared.graph, &pass, {}, {}, shared.countRays, scene.textureCount(), scene.traits};
   push_.assign(pushBytes(*pass.description) / 4, 0);
@@ -18,8 +22,13 @@ PassRuntime::PassRuntime(Shared& shared, uint32_t index)
   fillPush();
   for (const ParamDescription* p : specialParams(*pass.description))
     constants_.push_back(paramBits(*p, pass.params.at(p->name)));
+}
+
+void PassRuntime::prepare() {
   Preparing context(*this);
   pass_->prepare(context);
+  // A pass that launches nothing takes its turn all the same: others wait for it, and it for others.
+  if (stages_ == 0) stages_ = graph::kComputeStage;
 }
 
 PassRuntime::~PassRuntime() {
@@ -74,9 +83,19 @@ std::vector<uint32_t> PassRuntime::compile(KernelKind kind, shader::Stage stage,
   r.includeFolders.push_back(commonShaderFolder().string());
   for (const auto& [name, text] : options.sources) r.virtualFiles[name] = text;
   r.defines = options.defines;
-  shader::Module module = shared_.services.compiler->compile(r);
-  shared_.files.insert(module.files.begin(), module.files.end());
-  return std::move(module.spirv);
+  return compile(r);
+}
+
+std::vector<uint32_t> PassRuntime::compile(const shader::CompileRequest& request) {
+  std::set<std::string>* files = shared_.services.files;
+  try {
+    shader::Module module = shared_.services.compiler->compile(request);
+    if (files) files->insert(module.files.begin(), module.files.end());
+    return std::move(module.spirv);
+  } catch (const shader::CompileError& error) {
+    if (files) files->insert(error.files.begin(), error.files.end());
+    throw;
+  }
 }
 
 const HitShaders& PassRuntime::hitShaders() {
@@ -88,9 +107,7 @@ const HitShaders& PassRuntime::hitShaders() {
     r.source = hitShaderSource(file, scene.textureCount(), scene.traits);
     r.stage = stage;
     r.includeFolders.push_back(commonShaderFolder().string());
-    shader::Module module = shared_.services.compiler->compile(r);
-    shared_.files.insert(module.files.begin(), module.files.end());
-    return std::move(module.spirv);
+    return compile(r);
   };
   shared_.hitShaders = HitShaders{
       compileHit("closest_hit.glsl", shader::Stage::ClosestHit),

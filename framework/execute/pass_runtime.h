@@ -25,6 +25,8 @@ struct Services {
   shader::Compiler* compiler = nullptr;
   Registry* registry = nullptr;
   PipelineLibrary* pipelines = nullptr;
+  /// Every file that a shader was read from or looked for in, added to also when something fails. May be left out.
+  std::set<std::string>* files = nullptr;
 };
 
 /// What all passes of a graph share. Owned by the graph's runtime, outlives theirs.
@@ -36,7 +38,6 @@ struct Shared {
   bool countRays = false;
   std::string sceneFolder;
   std::optional<HitShaders> hitShaders;  ///< compiled when first needed
-  std::set<std::string> files;           ///< that shaders were read from
 };
 
 /// Where in a frame the recording is.
@@ -49,13 +50,15 @@ struct FrameCursor {
 
 class PassRuntime {
  public:
-  /// Creates the pass and runs its prepare(), which adds scratch resources to the graph. Throws what that throws, with
-  /// the pass's name in front.
+  /// Creates the pass. RuntimeError when its plugin was loaded anew since the graph was compiled.
   PassRuntime(Shared& shared, uint32_t index);
   ~PassRuntime();
   PassRuntime(const PassRuntime&) = delete;
   PassRuntime& operator=(const PassRuntime&) = delete;
 
+  /// Runs the pass's prepare(), which adds scratch resources to the graph. Throws what that throws, with the pass's
+  /// name in front.
+  void prepare();
   /// Binds the graph's resources to the kernels. With `bySlot` each frame in flight has bindings of its own, as the
   /// host's resources may change from one to the next; what is not there yet is left unbound.
   void bind(const Resources& resources, bool bySlot);
@@ -95,6 +98,7 @@ class PassRuntime {
   void fillPush();
   uint32_t addScratch(graph::Resource resource);
   Kernel addKernel(KernelKind kind, const std::string& file, const KernelOptions& options);
+  std::vector<uint32_t> compile(const shader::CompileRequest& request);
   std::vector<uint32_t> compile(KernelKind kind, shader::Stage stage, const std::string& file,
                                 const KernelOptions& options);
   std::string pipelineKey(KernelKind kind, const std::vector<const std::vector<uint32_t>*>& spirv) const;

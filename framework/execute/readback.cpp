@@ -85,11 +85,13 @@ std::vector<std::byte> Executor::download(const Storage& storage) {
 
 std::vector<std::byte> Executor::readResource(const std::string& name) {
   finish();
-  const uint32_t index = resourceNamed(name), last = static_cast<uint32_t>(graph().passes.size() - 1);
+  const uint32_t index = resourceNamed(name);
   const graph::Resource& r = graph().resources[index];
   if (r.external) throw InputError(fmt::format("'{}' is the host's: ask the host for it", name));
-  if (r.transient() && r.shares && r.lastUse != last)
+  if (r.transient() && r.shares && !r.graphOutput && !r.kept)
     throw InputError(fmt::format("'{}' is not kept to the frame's end: other resources use its memory", name));
+  if (r.transient() && r.shares && !runtime_->recorded())
+    throw InputError(fmt::format("'{}' can't be read before graph '{}' has run", name, graph().name));
   const uint32_t parity = static_cast<uint32_t>((scene_.frames() + 1) & 1u);  // of the last frame
   return download(runtime_->resources().at(index, parity, false));
 }
@@ -151,6 +153,10 @@ image::Picture Executor::read(const std::string& output) {
     throw InputError(fmt::format("output '{}' ({}) is a buffer of {}, not a picture", output, resource.name,
                                  resource.type.layout.name));
   }
+  if (resource.external)
+    throw InputError(fmt::format("output '{}' ({}) is the host's: ask the host for it", output, resource.name));
+  if (!runtime_->recorded())
+    throw InputError(fmt::format("output '{}' can't be read before graph '{}' has run", output, graph().name));
   finish();
   const uint32_t parity = static_cast<uint32_t>((scene_.frames() + 1) & 1u);
   const std::vector<std::byte> bytes = download(runtime_->resources().at(found->resource, parity, found->previous));

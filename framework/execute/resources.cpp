@@ -179,13 +179,12 @@ void Resources::setExternal(uint32_t resource, uint32_t slot, Storage storage) {
   external_[slot][resource] = std::move(storage);
 }
 
-void Resources::clearHistory(VkCommandBuffer commands, bool all) {
+void Resources::clearHistory(VkCommandBuffer commands, bool all) const {
   for (uint32_t r = 0; r < copies_.size(); ++r) {
     if (!graph_->resources[r].history) continue;
     if (!all && std::count(fresh_.begin(), fresh_.end(), r) == 0) continue;
     for (const Storage& s : *copies_[r]) clear(commands, s, graph_->resources[r].type);
   }
-  fresh_.clear();
 }
 
 }  // namespace weir::execute

@@ -47,7 +47,9 @@ class Resources {
   /// Whether there is history without content, to be cleared before the next frame.
   bool hasFresh() const { return !fresh_.empty(); }
   /// Clears both copies of history to its empty value: all of it, or what is fresh.
-  void clearHistory(VkCommandBuffer commands, bool all);
+  void clearHistory(VkCommandBuffer commands, bool all) const;
+  /// The frame that clears it is recorded: it is fresh no more.
+  void setCleared() { fresh_.clear(); }
 
  private:
   using Copies = std::array<Storage, 2>;  ///< the second one is empty without history

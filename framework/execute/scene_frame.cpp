@@ -54,6 +54,7 @@ void SceneFrame::begin(VkCommandBuffer commands, const FrameInput& input, uint32
 }
 
 void SceneFrame::end() {
+  previousCamera_ = camera_;
   fresh_ = false;
   ++frames_;
 }
@@ -62,7 +63,7 @@ void SceneFrame::writeConstants(const FrameInput& input, uint32_t slot, uint32_t
   FrameConstants c;
   c.camera = toGpu(input.camera, width, height);
   c.previousCamera = fresh_ ? c.camera : previousCamera_;
-  previousCamera_ = c.camera;
+  camera_ = c.camera;
   c.width = width;
   c.height = height;
   c.frame = input.index;

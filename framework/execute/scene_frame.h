@@ -62,7 +62,7 @@ class SceneFrame {
   std::array<VkDescriptorSet, 2> sets_{};  ///< by parity; of a still scene both are one
   uint64_t frames_ = 0;
   bool fresh_ = true;
-  GpuCamera previousCamera_;
+  GpuCamera camera_, previousCamera_;  ///< of the frame that is being recorded, and of the last one
 };
 
 }  // namespace weir::execute

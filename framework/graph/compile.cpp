@@ -18,44 +18,67 @@ void checkFrameSize(uint32_t width, uint32_t height, Findings& findings) {
                "--size");
 }
 
-/// Marks what the host provides: readers of those ports have no producer to wait for.
-void markProvided(Checked& checked, const std::string& graph, const std::vector<std::string>& provided) {
-  std::vector<std::string> names;
-  for (const Node& node : checked.nodes)
-    if (node.type)
-      for (const PortDescription& port : node.type->outputs) names.push_back(node.name() + "." + port.name);
-  for (const std::string& name : provided) {
-    Source source;
-    const std::optional<Reference> reference = parseReference(name);
-    for (uint32_t n = 0; reference && n < checked.nodes.size(); ++n) {
-      if (checked.nodes[n].name() != reference->pass || !checked.nodes[n].type) continue;
-      const auto& outputs = checked.nodes[n].type->outputs;
-      for (uint32_t o = 0; o < outputs.size(); ++o)
-        if (outputs[o].name == reference->port) source = {n, o, reference->previous};
-    }
-    if (!source.known()) {
-      const std::string nearest = nearestName(name, names);
-      throw InputError(fmt::format("provided: graph '{}' has no port '{}'{}", graph, name,
-                                   nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)));
-    }
-    checked.provided.push_back(source);
+/// The port that a name means; one that is not known when there is none.
+Source portNamed(const Checked& checked, const std::string& name) {
+  const std::optional<Reference> reference = parseReference(name);
+  for (uint32_t n = 0; reference && n < checked.nodes.size(); ++n) {
+    if (checked.nodes[n].name() != reference->pass || !checked.nodes[n].type) continue;
+    const auto& outputs = checked.nodes[n].type->outputs;
+    for (uint32_t o = 0; o < outputs.size(); ++o)
+      if (outputs[o].name == reference->port) return {n, o, reference->previous};
   }
-  const auto mark = [&](Source& resolved, const std::string& reader) {
+  return {};
+}
+
+/// Each name must be a port of the graph, whether its pass runs or not, and stand there once.
+void checkPorts(const Checked& checked, const char* what, const std::vector<std::string>& names, bool previous) {
+  for (size_t i = 0; i < names.size(); ++i) {
+    const Source source = portNamed(checked, names[i]);
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(i))
+      throw InputError(fmt::format("{}: '{}' is named twice", what, names[i]));
+    if (source.known() && (previous || !source.previous)) continue;
+    std::vector<std::string> ports;
+    for (const Node& node : checked.nodes)
+      if (node.type)
+        for (const PortDescription& port : node.type->outputs) ports.push_back(node.name() + "." + port.name);
+    const std::string nearest = nearestName(names[i], ports);
+    throw InputError(fmt::format("{}: the graph has no port '{}'{}", what, names[i],
+                                 nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)));
+  }
+}
+
+/// Marks what the host provides: readers of those ports have no producer to wait for.
+void markProvided(Checked& checked, const CompileOptions& options) {
+  checkPorts(checked, "provided", options.provided, true);
+  checkPorts(checked, "external", options.external, false);
+  checkPorts(checked, "keep", options.keep, false);
+  for (const std::string& name : options.provided) {
+    if (std::find(options.external.begin(), options.external.end(), name) != options.external.end())
+      throw InputError(fmt::format("'{}' can't be both provided by the host and written for it", name));
+    checked.provided.push_back(portNamed(checked, name));
+  }
+  const auto mark = [&](const Source& written, Source& resolved, const std::string& reader) {
     for (uint32_t i = 0; i < checked.provided.size(); ++i) {
       const Source& p = checked.provided[i];
-      if (resolved.node != p.node || resolved.output != p.output) continue;
-      if (resolved.previous == p.previous) resolved.provided = i;
+      // As the file says it, too: a disabled pass's port that the host provides is the host's.
+      for (const Source& source : {written, resolved})
+        if (source.node == p.node && source.output == p.output && source.previous == p.previous) {
+          resolved = source;
+          resolved.provided = i;
+          return;
+        }
     }
-    if (!resolved.previous || resolved.provided != kNone) return;
     for (const Source& p : checked.provided)
-      if (!p.previous && p.node == resolved.node && p.output == resolved.output)
+      if (resolved.previous && !p.previous && p.node == resolved.node && p.output == resolved.output)
         throw InputError(
             fmt::format("provided: '{}' comes from the host, and '{}' reads its @previous: provide '{}' too",
                         checked.text(p), reader, checked.text(resolved)));
   };
   for (Node& node : checked.nodes)
-    for (Link& link : node.links) mark(link.resolved, node.name());
-  for (OutputLink& output : checked.outputs) mark(output.resolved, output.entry->name);
+    for (Link& link : node.links)
+      if (node.enabled()) mark(link.written, link.resolved, node.name());
+  for (OutputLink& output : checked.outputs) mark(output.written, output.resolved, output.entry->name);
 }
 
 }  // namespace
@@ -78,7 +101,7 @@ CompiledGraph compile(const Description& description, const PassCatalog& catalog
   checkFrameSize(options.width, options.height, findings);
   Checked checked = bind(description, catalog, findings);
   resolve(checked, findings);
-  if (!options.provided.empty()) markProvided(checked, description.name, options.provided);
+  if (!findings.any()) markProvided(checked, options);
   matchPorts(checked, findings);
   findCycles(checked, findings);
   if (description.outputs.empty() && !findings.any())

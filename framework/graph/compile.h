@@ -139,8 +139,9 @@ struct PassCatalog {
 
 struct CompileOptions {
   uint32_t width = 0, height = 0;  ///< of the frame
+  // Names of ports. InputError when the graph has no such port; that its pass does not run is no error.
   /// "pass.port" or "pass.port@previous": its readers get a resource of the host's instead, and the pass that would
-  /// make it does not run unless something else needs it. InputError when the graph has no such port.
+  /// make it does not run unless something else needs it.
   std::vector<std::string> provided;
   /// "pass.port": an output of a pass that is written into a resource of the host's.
   std::vector<std::string> external;

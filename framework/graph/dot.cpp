@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 namespace weir::graph {
@@ -27,9 +28,10 @@ std::string dot(const CompiledGraph& graph) {
   // Passes and outputs may share a name, so outputs have a prefix that no pass can have.
   const auto edge = [&](uint32_t resource, bool previous, const std::string& to) {
     const Resource& r = graph.resources[resource];
-    const std::string& from = graph.passes[r.producer].name;
-    const std::string port = r.name.substr(from.size() + 1);
-    say("  {} -> {} [label={}{}];\n", quoted(from), to, quoted(port + (previous ? "@previous" : "")),
+    const bool fromHost = r.producer == kNone;  // its own name says which "@previous" it stands for
+    const std::string from = fromHost ? "host" : graph.passes[r.producer].name;
+    const std::string port = fromHost ? r.name : r.name.substr(from.size() + 1);
+    say("  {} -> {} [label={}{}];\n", fromHost ? from : quoted(from), to, quoted(port + (previous ? "@previous" : "")),
         previous ? ", style=dashed, constraint=false" : "");
   };
   say("digraph {} {{\n  rankdir=LR;\n  node [shape=box, fontname=\"sans-serif\"];\n", quoted(graph.name));
@@ -41,6 +43,9 @@ std::string dot(const CompiledGraph& graph) {
     say("  {} [color=gray, fontcolor=gray, tooltip={}];\n", quoted(s.pass), quoted(s.reason));
   for (const GraphOutput& output : graph.outputs)
     say("  {} [label={}, shape=ellipse];\n", quoted("output:" + output.name), quoted(output.name));
+  if (std::any_of(graph.resources.begin(), graph.resources.end(),
+                  [](const Resource& r) { return r.producer == kNone; }))
+    say("  host [label=host, shape=ellipse];\n");
   for (const CompiledPass& pass : graph.passes)
     for (const Binding& input : pass.inputs)
       if (input.resource != kNone) edge(input.resource, input.previous, quoted(pass.name));

@@ -29,7 +29,7 @@ class Matcher {
     return node.enabled() ? link.resolved : link.written;
   }
 
-  /// An output whose count is being asked for, and whether it was reached by way of last frame's value.
+  /// An output whose count is being asked for, and whether it was reached by way of last frame's value or the host's.
   struct Step {
     uint32_t node, output;
     bool previous;
@@ -67,7 +67,7 @@ class Matcher {
       if (port.type.perPixelFromParam.empty() && !port.type.perPixelFromInput.empty()) {
         const Source source = countedSource(node, port);
         if (!source.known()) break;
-        at = {source.node, source.output, source.previous};
+        at = {source.node, source.output, source.previous || source.provided != kNone};
         continue;
       }
       found = port.type.perPixelFromParam.empty() ? port.type.perPixel : countFromParam(node, port);

@@ -41,8 +41,10 @@ class Planner {
     std::sort(graph_.outputs.begin(), graph_.outputs.end(),
               [](const GraphOutput& a, const GraphOutput& b) { return a.name < b.name; });
     graph_.skipped = order_.skipped;
-    for (const std::string& name : options_.external) find(name, "external").external = true;
-    for (const std::string& name : options_.keep) find(name, "keep").kept = true;
+    for (const std::string& name : options_.external)
+      if (Resource* r = find(name)) r->external = true;
+    for (const std::string& name : options_.keep)
+      if (Resource* r = find(name)) r->kept = true;
     if (!findings_.any()) endLives();
   }
 
@@ -76,15 +78,11 @@ class Planner {
     graph_.resources.push_back(std::move(r));
   }
 
-  Resource& find(const std::string& name, const char* what) {
-    std::vector<std::string> names;
-    for (Resource& r : graph_.resources) {
-      if (r.name == name && r.producer != kNone) return r;
-      names.push_back(r.name);
-    }
-    const std::string nearest = nearestName(name, names);
-    throw InputError(fmt::format("{}: graph '{}' has no resource '{}'{}", what, graph_.name, name,
-                                 nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)));
+  /// The resource that a pass makes for this port; nullptr when the pass does not run.
+  Resource* find(const std::string& name) {
+    const auto found = std::find_if(graph_.resources.begin(), graph_.resources.end(),
+                                    [&](const Resource& r) { return r.name == name && r.producer != kNone; });
+    return found == graph_.resources.end() ? nullptr : &*found;
   }
 
   void endLives() {

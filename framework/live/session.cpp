@@ -10,13 +10,19 @@
 namespace weir::live {
 namespace {
 
-/// Runs what an edit asks for; what goes wrong is the event's error.
+std::string pluginOf(const std::string& type) {
+  return type.substr(0, type.find('.'));
+}
+
+/// Runs what an edit asks for. What goes wrong is the event's error; whether nothing did.
 template <typename Work>
-void attempt(Event& event, Work work) {
+bool attempt(Event& event, Work work) {
   try {
     work();
+    return true;
   } catch (const std::exception& error) {
     event.error += (event.error.empty() ? "" : "\n") + std::string(error.what());
+    return false;
   }
 }
 
@@ -26,39 +32,62 @@ Session::Session(const gpu::Device& device, shader::Compiler& compiler, Registry
                  const scene::SceneGpu& scene, const std::string& graphFile, const graph::Overrides& overrides,
                  const graph::CompileOptions& compileOptions, const execute::ExecutorOptions& executorOptions)
     : registry_(registry), graphFile_(graphFile), overrides_(overrides), options_(compileOptions) {
+  const WatchedFiles::Moment before = WatchedFiles::now();
   executor_ = std::make_unique<execute::Executor>(device, compiler, registry, scene, compile(overrides, options_),
                                                   executorOptions);
-  watch();
+  watch(before);
 }
 
 graph::CompiledGraph Session::compile(const graph::Overrides& overrides, const graph::CompileOptions& options) const {
   return graph::compileFile(graphFile_, overrides, registry_.catalog(), options);
 }
 
-/// Of the plugins that the running graph uses.
-std::vector<std::string> Session::plugins() const {
+/// Of the passes that run, and of those that the file names: what is wrong with a plugin may be why it does not run
+/// yet.
+std::set<std::string> Session::plugins() const {
   std::set<std::string> names;
-  for (const graph::CompiledPass& pass : executor_->graph().passes)
-    names.insert(pass.type.substr(0, pass.type.find('.')));
-  return {names.begin(), names.end()};
+  for (const graph::CompiledPass& pass : executor_->graph().passes) names.insert(pluginOf(pass.type));
+  try {
+    std::vector<graph::Diagnostic> ignored;
+    for (const graph::PassEntry& pass : graph::load(graphFile_, ignored).passes) names.insert(pluginOf(pass.type));
+  } catch (const InputError&) {
+    // Unreadable at the moment.
+  }
+  return names;
 }
 
-void Session::watch() {
-  std::vector<std::string> files = executor_->runtime().shaderFiles();
+std::vector<std::string> Session::filesOf(const std::string& plugin) const {
+  std::vector<std::string> files;
+  for (const auto& file : registry_.pluginFiles(plugin)) files.push_back(file.string());
+  if (files.empty()) return files;
+  try {
+    // The library that the manifest names by now, also when it is not there yet.
+    files.push_back(readManifest(files.front()).library.string());
+  } catch (const InputError&) {
+    // The manifest itself is watched.
+  }
+  return files;
+}
+
+void Session::watch(WatchedFiles::Moment before) {
+  const std::set<std::string>& shaders = executor_->shaderFiles();
+  std::vector<std::string> files(shaders.begin(), shaders.end());
   files.push_back(graphFile_);
   for (const std::string& plugin : plugins())
-    for (const auto& file : registry_.pluginFiles(plugin)) files.push_back(file.string());
-  files_.watch(files);
+    for (std::string& file : filesOf(plugin)) files.push_back(std::move(file));
+  files_.watch(files, before);
 }
 
 void Session::change(const graph::Overrides& overrides, const graph::CompileOptions& compileOptions) {
+  const WatchedFiles::Moment before = WatchedFiles::now();
   executor_->swap(compile(overrides, compileOptions));
   overrides_ = overrides;
   options_ = compileOptions;
-  watch();
+  watch(before);
 }
 
 std::vector<Event> Session::poll() {
+  const WatchedFiles::Moment before = WatchedFiles::now();
   std::vector<std::string> changed = files_.changed();
   if (changed.empty()) return {};
   std::vector<Event> events;
@@ -69,31 +98,35 @@ std::vector<Event> Session::poll() {
     return taken;
   };
 
-  // Plugins first: a graph may have been edited to use what is new in them.
+  // All plugins, then one graph: what one of them shares with another fits only when both are new.
   for (const std::string& plugin : plugins()) {
-    const auto files = registry_.pluginFiles(plugin);
+    const std::vector<std::string> files = filesOf(plugin);
     Event event{Event::Kind::Plugin, takeOut([&](const std::string& file) {
                   return std::find(files.begin(), files.end(), file) != files.end();
                 }),
                 ""};
     if (event.files.empty()) continue;
-    attempt(event, [&] {
-      registry_.reload(plugin);
-      executor_->swap(compile(overrides_, options_));
-    });
+    attempt(event, [&] { registry_.reload(plugin); });
     events.push_back(std::move(event));
   }
-  Event graphEvent{Event::Kind::Graph, takeOut([&](const std::string& file) { return file == graphFile_; }), ""};
-  if (!graphEvent.files.empty()) {
-    attempt(graphEvent, [&] { executor_->swap(compile(overrides_, options_)); });
-    events.push_back(std::move(graphEvent));
-  }
-  if (!changed.empty()) {
-    Event event{Event::Kind::Shader, std::move(changed), ""};
-    attempt(event, [&] { executor_->reloadShaders(); });
-    events.push_back(std::move(event));
-  }
-  watch();
+  std::vector<std::string> graphFiles = takeOut([&](const std::string& file) { return file == graphFile_; });
+  if (!graphFiles.empty()) events.push_back({Event::Kind::Graph, std::move(graphFiles), ""});
+  const bool shaders = !changed.empty();
+  if (shaders) events.push_back({Event::Kind::Shader, std::move(changed), ""});
+
+  // Whatever changed, what comes of it is the graph as its file now says it. What is wrong with that is told by each of
+  // the changes that were fine until then.
+  Event outcome;
+  attempt(outcome, [&] {
+    graph::CompiledGraph graph = compile(overrides_, options_);
+    if (shaders)
+      executor_->restart(std::move(graph));
+    else
+      executor_->swap(std::move(graph));
+  });
+  for (Event& event : events)
+    if (event.error.empty()) event.error = outcome.error;
+  watch(before);
   return events;
 }
 

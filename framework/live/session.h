@@ -8,12 +8,14 @@
 #include <weir/pass/registry.h>
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace weir::live {
 
-/// What a session noticed.
+/// What a session noticed. All that changed since the last look takes effect together, or nothing of it but the
+/// plugins: then each event has the error.
 struct Event {
   enum class Kind : uint8_t { Graph, Plugin, Shader };
   Kind kind = Kind::Graph;
@@ -40,8 +42,9 @@ class Session {
 
  private:
   graph::CompiledGraph compile(const graph::Overrides& overrides, const graph::CompileOptions& options) const;
-  void watch();
-  std::vector<std::string> plugins() const;
+  void watch(WatchedFiles::Moment before);
+  std::set<std::string> plugins() const;
+  std::vector<std::string> filesOf(const std::string& plugin) const;
 
   Registry& registry_;
   std::string graphFile_;

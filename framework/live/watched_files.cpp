@@ -1,6 +1,7 @@
 #include <weir/live/watched_files.h>
 
 #include <sys/stat.h>
+#include <time.h>
 
 #include <utility>
 
@@ -9,14 +10,24 @@ namespace weir::live {
 WatchedFiles::Seen WatchedFiles::look(const std::string& file) {
   struct stat status {};
   if (stat(file.c_str(), &status) != 0) return {};
-  return {status.st_mtim.tv_sec, status.st_mtim.tv_nsec, static_cast<uint64_t>(status.st_size), status.st_ino};
+  return {{status.st_mtim.tv_sec, status.st_mtim.tv_nsec}, static_cast<uint64_t>(status.st_size), status.st_ino};
 }
 
-void WatchedFiles::watch(const std::vector<std::string>& files) {
+WatchedFiles::Moment WatchedFiles::now() {
+  timespec time{};
+  clock_gettime(CLOCK_REALTIME, &time);  // files are dated by it, give or take a tick of the kernel
+  return {time.tv_sec, time.tv_nsec};
+}
+
+void WatchedFiles::watch(const std::vector<std::string>& files, Moment before) {
   std::map<std::string, Seen> wanted;
   for (const std::string& file : files) {
-    const auto known = files_.find(file);
-    wanted[file] = known == files_.end() ? look(file) : known->second;
+    if (const auto known = files_.find(file); known != files_.end()) {
+      wanted[file] = known->second;
+      continue;
+    }
+    const Seen seen = look(file);
+    wanted[file] = seen.written > before ? Seen{} : seen;
   }
   files_ = std::move(wanted);
 }

@@ -1,6 +1,7 @@
 // Notices that files changed: by looking at them, as that works for every editor, on every file system.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -10,16 +11,23 @@ namespace weir::live {
 
 class WatchedFiles {
  public:
-  /// Watches these and no others. Those that were watched before keep what was seen of them, so that a change in
-  /// between is not lost.
-  void watch(const std::vector<std::string>& files);
+  /// A point in time, by the clock that files are dated with.
+  struct Moment {
+    int64_t seconds = 0, nanoseconds = 0;
+    auto operator<=>(const Moment&) const = default;
+  };
+  static Moment now();
+
+  /// Watches these and no others. Those that were watched before keep what was seen of them; of the others a change
+  /// counts that was made after `before`, when their reading began.
+  void watch(const std::vector<std::string>& files, Moment before);
   /// What changed since the last call: written, replaced, removed or there again. Sorted.
   std::vector<std::string> changed();
 
  private:
   /// All zero: there is no such file.
   struct Seen {
-    int64_t seconds = 0, nanoseconds = 0;
+    Moment written;
     uint64_t size = 0, inode = 0;
     bool operator==(const Seen&) const = default;
   };

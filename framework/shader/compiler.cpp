@@ -12,11 +12,11 @@ size_t countFound(const Sources& sources) {
   return std::ranges::count_if(sources.files(), [](const auto& entry) { return entry.second != nullptr; });
 }
 
-/// Those on disk: a virtual file can't be watched.
-std::vector<std::string> filesOnDisk(const Sources& sources) {
+/// Those on disk: a virtual file can't be watched. With `missing` also those that are not there.
+std::vector<std::string> filesOnDisk(const Sources& sources, bool missing = false) {
   std::vector<std::string> paths;
   for (const auto& [path, file] : sources.files()) {
-    if (file && !file->isVirtual) paths.push_back(path);
+    if (file ? !file->isVirtual : missing) paths.push_back(path);
   }
   return paths;
 }
@@ -37,7 +37,12 @@ Module Compiler::compile(const CompileRequest& request) {
     module.fromCache = !module.spirv.empty();
     if (module.fromCache) return module;
   }
-  module.spirv = compileToSpirv(request, sources);
+  try {
+    module.spirv = compileToSpirv(request, sources);
+  } catch (CompileError& error) {
+    error.files = filesOnDisk(sources, true);
+    throw;
+  }
   module.files = filesOnDisk(sources);
   // The scanner reads #include lines as they are commonly written. Where glslang found a file that it did not, the key
   // doesn't cover that file, so the result is used but not kept.

@@ -16,6 +16,8 @@ enum class Stage : uint8_t { Compute, RayGeneration, ClosestHit, AnyHit, Miss, V
 class CompileError : public RuntimeError {
  public:
   using RuntimeError::RuntimeError;
+  /// Everything that was read, and what was looked for and not there: what hot reload watches until it is mended.
+  std::vector<std::string> files;
 };
 
 struct CompileRequest {

@@ -11,8 +11,8 @@ namespace weir::test {
 /// What tests run on: $WEIR_TEST_DEVICE, or "cpu" so that they run everywhere and alike.
 std::string deviceChoice();
 
-/// Whether devices of tests get the validation layers: unless $WEIR_TEST_VALIDATION is "off", which is for machines that
-/// have no layers.
+/// Whether devices of tests get the validation layers: unless $WEIR_TEST_VALIDATION is "off", which is for machines
+/// that have no layers.
 bool validationWanted();
 
 /// Absolute path of a file in the source tree, which $WEIR_SOURCE_DIR moves; and in the build tree ($WEIR_BINARY_DIR):
