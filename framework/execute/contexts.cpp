@@ -5,6 +5,7 @@
 #include <weir/gpu/barrier.h>
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <type_traits>
 
@@ -59,33 +60,43 @@ void Preparing::beforeKernels(const std::string& what) const {
 void Preparing::scratch(const std::string& name, const PortType& type) {
   beforeKernels("scratch '" + name + "'");
   const graph::CompiledPass& pass = runtime_.compiled();
-  uint32_t perPixel = type.perPixel;
-  if (!type.perPixelFromParam.empty()) perPixel = static_cast<uint32_t>(integer(type.perPixelFromParam));
+  const auto fail = [&](const std::string& what) {
+    throw InputError(fmt::format("{} ({}): scratch '{}' {}", pass.name, pass.type, name, what));
+  };
+  for (const Scratch& s : runtime_.interface_.scratch)
+    if (s.name == name) fail("is declared twice");
+  const bool image = type.kind == PortKind::Image;
+  if (type.scaleNumerator == 0 || type.scaleDenominator == 0) fail("has a scale of nothing");
+  if (!image && type.layout.stride == 0) fail("has a layout without fields");
+  if (image && type.fixedCount != 0) fail("is an image with a count of elements");
+  int64_t perPixel = type.perPixel;
+  if (!type.perPixelFromParam.empty()) perPixel = integer(type.perPixelFromParam);
   if (!type.perPixelFromInput.empty()) {
-    if (!connected(type.perPixelFromInput)) {
-      throw InputError(fmt::format("{}: scratch '{}' takes its count from the open input '{}'", pass.name, name,
-                                   type.perPixelFromInput));
-    }
+    if (!connected(type.perPixelFromInput))
+      fail(fmt::format("takes its count from the open input '{}'", type.perPixelFromInput));
     for (const graph::Binding& b : pass.inputs) {
       if (b.port == type.perPixelFromInput) perPixel = runtime_.shared_.graph->resources[b.resource].perPixel;
     }
   }
-  auto scaled = [&](uint32_t side) {
-    return (side * type.scaleNumerator + type.scaleDenominator - 1) / type.scaleDenominator;
+  if (perPixel < 1) fail(fmt::format("has {} elements a pixel", perPixel));
+  const auto scaled = [&](uint32_t side) {
+    return (uint64_t{side} * type.scaleNumerator + type.scaleDenominator - 1) / type.scaleDenominator;
   };
-  const uint32_t w = scaled(width()), h = scaled(height());
-  const uint64_t elements = type.fixedCount > 0 ? type.fixedCount : uint64_t{w} * h * perPixel;
+  const uint64_t w = scaled(width()), h = scaled(height());
+  constexpr uint64_t kMostElements = std::numeric_limits<uint32_t>::max();  // shaders index with 32 bits
+  if (w > kMostElements || h > kMostElements || w * h > kMostElements / static_cast<uint64_t>(perPixel))
+    fail(fmt::format("would have {} x {} pixels with {} elements each", w, h, perPixel));
+  const uint64_t elements = type.fixedCount > 0 ? type.fixedCount : w * h * static_cast<uint64_t>(perPixel);
   graph::Resource r;
   r.name = pass.name + " scratch " + name;
   r.type = type;
-  r.width = type.fixedCount > 0 ? 0 : w;
-  r.height = type.fixedCount > 0 ? 0 : h;
-  r.perPixel = perPixel;
-  const bool image = type.kind == PortKind::Image;
+  r.width = type.fixedCount > 0 ? 0 : static_cast<uint32_t>(w);
+  r.height = type.fixedCount > 0 ? 0 : static_cast<uint32_t>(h);
+  r.perPixel = static_cast<uint32_t>(perPixel);
   r.elements = image ? 0 : elements;
-  r.bytes = image ? uint64_t{w} * h * formatBytes(type.format) : elements * type.layout.stride;
+  r.bytes = image ? w * h * formatBytes(type.format) : elements * type.layout.stride;
   runtime_.addScratch(std::move(r));
-  runtime_.interface_.scratch.push_back({name, type, perPixel});
+  runtime_.interface_.scratch.push_back({name, type, static_cast<uint32_t>(perPixel)});
 }
 
 void Preparing::texture(const std::string& name, TextureData data) {

@@ -65,6 +65,7 @@ GraphRuntime::GraphRuntime(const Services& services, SceneFrame& scene, graph::C
     passes_.back()->prepare();
     graph_.passes[p].stages = passes_.back()->stages();
   }
+  checkLimits(device_, graph_);
   // Only now is it known what scratch memory there is and which stages passes run in.
   planMemory(graph_, deviceNeeds(device_, graph_), share_, largestAllocation(device_));
   planBarriers(graph_);
@@ -103,6 +104,8 @@ bool GraphRuntime::update(const graph::CompiledGraph& graph) {
 }
 
 void GraphRuntime::setExternal(const std::string& name, uint32_t slot, Storage storage) {
+  if (slot >= SceneFrame::kSlots)
+    throw InputError(fmt::format("slot {} of '{}': there are {} frames in flight", slot, name, SceneFrame::kSlots));
   std::vector<std::string> names;
   for (uint32_t r = 0; r < graph_.resources.size(); ++r) {
     const graph::Resource& resource = graph_.resources[r];
@@ -112,7 +115,7 @@ void GraphRuntime::setExternal(const std::string& name, uint32_t slot, Storage s
     if (static_cast<bool>(storage.image) != resource.isImage())
       throw InputError(fmt::format("'{}' is {}", name, describe(resource.type)));
     resources_->setExternal(r, slot, std::move(storage));
-    for (const auto& pass : passes_) pass->rebind(*resources_, slot);
+    for (const auto& pass : passes_) pass->rebind(*resources_, slot, r);
     return;
   }
   const std::string nearest = nearestName(name, names);

@@ -3,6 +3,8 @@
 #include <weir/core/error.h>
 #include <weir/execute/pass_runtime.h>
 
+#include <algorithm>
+
 namespace weir::execute {
 namespace {
 
@@ -139,17 +141,24 @@ void PassRuntime::writeSet(const PreparedKernel& kernel, VkDescriptorSet set, co
   vkUpdateDescriptorSets(device().handle(), static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }
 
+void PassRuntime::writeSets(const PreparedKernel& kernel, const Resources& resources, uint32_t slot) const {
+  for (uint32_t parity = 0; parity < 2; ++parity)
+    writeSet(kernel, kernel.sets[(bySlot_ ? 2 * slot : 0) + parity], resources, slot, parity);
+}
+
 void PassRuntime::bind(const Resources& resources, bool bySlot) {
   bySlot_ = bySlot;
   resources_ = &resources;
-  for (PreparedKernel& kernel : kernels_) makeSets(kernel, bySlot ? 2 * SceneFrame::kSlots : 2);
-  for (uint32_t slot = 0; slot < (bySlot ? SceneFrame::kSlots : 1); ++slot) rebind(resources, slot);
+  for (PreparedKernel& kernel : kernels_) {
+    makeSets(kernel, bySlot ? 2 * SceneFrame::kSlots : 2);
+    for (uint32_t slot = 0; slot < (bySlot ? SceneFrame::kSlots : 1); ++slot) writeSets(kernel, resources, slot);
+  }
 }
 
-void PassRuntime::rebind(const Resources& resources, uint32_t slot) {
-  for (PreparedKernel& kernel : kernels_)
-    for (uint32_t parity = 0; parity < 2; ++parity)
-      writeSet(kernel, kernel.sets[(bySlot_ ? 2 * slot : 0) + parity], resources, slot, parity);
+void PassRuntime::rebind(const Resources& resources, uint32_t slot, uint32_t resource) {
+  for (const PreparedKernel& kernel : kernels_)
+    if (std::ranges::any_of(kernel.slots, [&](const Slot& s) { return s.resource == resource; }))
+      writeSets(kernel, resources, slot);
 }
 
 }  // namespace weir::execute

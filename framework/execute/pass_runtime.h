@@ -62,8 +62,8 @@ class PassRuntime {
   /// Binds the graph's resources to the kernels. With `bySlot` each frame in flight has bindings of its own, as the
   /// host's resources may change from one to the next; what is not there yet is left unbound.
   void bind(const Resources& resources, bool bySlot);
-  /// The same for one slot, which no frame in flight uses.
-  void rebind(const Resources& resources, uint32_t slot);
+  /// The same for one slot, which no frame in flight uses, after one of the graph's resources was exchanged.
+  void rebind(const Resources& resources, uint32_t slot, uint32_t resource);
   void record(const FrameCursor& cursor);
 
   graph::Stages stages() const { return stages_; }  ///< of all its kernels
@@ -105,6 +105,7 @@ class PassRuntime {
   std::vector<Slot> slotsFor(const KernelOptions& options) const;
   Slot slotNamed(const std::string& name) const;
   void makeSets(PreparedKernel& kernel, uint32_t count);
+  void writeSets(const PreparedKernel& kernel, const Resources& resources, uint32_t slot) const;
   void writeSet(const PreparedKernel& kernel, VkDescriptorSet set, const Resources& resources, uint32_t slot,
                 uint32_t parity) const;
   const HitShaders& hitShaders();

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+#include <weir/core/error.h>
 #include <weir/execute/resources.h>
 
 #include <algorithm>
@@ -67,6 +69,21 @@ std::vector<graph::MemoryNeed> deviceNeeds(const gpu::Device& device, const grap
     needs.push_back({n.bytes, n.alignment, n.kinds});
   }
   return needs;
+}
+
+void checkLimits(const gpu::Device& device, const graph::CompiledGraph& graph) {
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(device.physical(), &properties);
+  const uint32_t side = properties.limits.maxImageDimension2D;
+  const uint64_t range = device.capabilities().maxStorageBufferRange;
+  for (const graph::Resource& r : graph.resources) {
+    if (r.isImage() && (r.width > side || r.height > side))
+      throw InputError(fmt::format("'{}' is {}x{}, and images of {} have at most {} pixels each way", r.name, r.width,
+                                   r.height, device.info().name, side));
+    if (!r.isImage() && r.bytes > range)
+      throw InputError(fmt::format("'{}' takes {} bytes, and shaders of {} see at most {} of a buffer", r.name, r.bytes,
+                                   device.info().name, range));
+  }
 }
 
 VkImageMemoryBarrier2 toGeneral(const gpu::Image& image) {

@@ -25,6 +25,9 @@ gpu::ImageDesc imageDesc(const gpu::Device& device, const graph::Resource& resou
 /// Asks the device what each resource needs of its memory.
 std::vector<graph::MemoryNeed> deviceNeeds(const gpu::Device& device, const graph::CompiledGraph& graph);
 
+/// InputError when a buffer is larger than shaders of this device can see, or an image than it can make.
+void checkLimits(const gpu::Device& device, const graph::CompiledGraph& graph);
+
 /// A barrier that puts an image into the layout GENERAL; its content becomes undefined.
 VkImageMemoryBarrier2 toGeneral(const gpu::Image& image);
 /// Fills with the layout's empty word, images with zero. The caller provides the barriers.

@@ -23,6 +23,7 @@ struct FrameInput {
   const scene::SceneState* state = nullptr;
 };
 
+/// One graph at a time records over it: each frame that is recorded is the next one.
 class SceneFrame {
  public:
   static constexpr uint32_t kSlots = SceneMotion::kSlots;  ///< frames in flight

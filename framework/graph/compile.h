@@ -139,13 +139,13 @@ struct PassCatalog {
 
 struct CompileOptions {
   uint32_t width = 0, height = 0;  ///< of the frame
-  // Names of ports. InputError when the graph has no such port; that its pass does not run is no error.
+  // Names of ports; InputError when the graph has no such port.
   /// "pass.port" or "pass.port@previous": its readers get a resource of the host's instead, and the pass that would
   /// make it does not run unless something else needs it.
   std::vector<std::string> provided;
-  /// "pass.port": an output of a pass that is written into a resource of the host's.
+  /// "pass.port": an output of a pass that is written into a resource of the host's. InputError when it does not run.
   std::vector<std::string> external;
-  /// "pass.port": stays readable to the frame's end.
+  /// "pass.port": stays readable to the frame's end, if its pass runs.
   std::vector<std::string> keep;
   bool keepAll = false;
 };

@@ -41,8 +41,11 @@ class Planner {
     std::sort(graph_.outputs.begin(), graph_.outputs.end(),
               [](const GraphOutput& a, const GraphOutput& b) { return a.name < b.name; });
     graph_.skipped = order_.skipped;
-    for (const std::string& name : options_.external)
-      if (Resource* r = find(name)) r->external = true;
+    for (const std::string& name : options_.external) {
+      Resource* r = find(name);
+      if (r == nullptr) throw InputError(fmt::format("external: nobody writes '{}': its pass does not run", name));
+      r->external = true;
+    }
     for (const std::string& name : options_.keep)
       if (Resource* r = find(name)) r->kept = true;
     if (!findings_.any()) endLives();

@@ -57,6 +57,8 @@ class Checker {
       fail("{} '{}' has scale {}/{}; both must be at least 1", what, p.name, p.type.scaleNumerator,
            p.type.scaleDenominator);
     if (p.type.perPixel == 0) fail("{} '{}' has no element a pixel", what, p.name);
+    if (p.type.kind == PortKind::Image && p.type.fixedCount != 0)
+      fail("{} '{}' is an image with a count of elements; only buffers have one", what, p.name);
     if (p.type.kind == PortKind::Buffer && p.type.layout.stride == 0)
       fail("{} '{}' has a layout '{}' without fields or with a field of unknown type", what, p.name,
            p.type.layout.name);

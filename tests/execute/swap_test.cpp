@@ -103,6 +103,20 @@ class Join final : public Pass {
     d.output("sum", perPixel<Word>());
   }
   void prepare(PrepareContext& c) override { kernel_ = c.kernel("join.glsl"); }
+  void record(RecordContext& c) override {
+    if (fails) throw RuntimeError("no frame today");
+    c.launch(kernel_);
+  }
+  static inline bool fails = false;
+
+ private:
+  Kernel kernel_;
+};
+
+class Paint final : public Pass {
+ public:
+  static void describe(PassDescription& d) { d.output("image", storageImage(Format::R32F)); }
+  void prepare(PrepareContext& c) override { kernel_ = c.kernel("paint.glsl"); }
   void record(RecordContext& c) override { c.launch(kernel_); }
 
  private:
@@ -121,6 +135,8 @@ void run(uvec2 pixel) {
 )");
     std::vector<WeirPassEntry> passes = kPasses;
     passes.push_back(passEntry<Join>("Join"));
+    passes.push_back(passEntry<Paint>("Paint"));
+    folder_.write("paint.glsl", "void run(uvec2 p) { imageStore(out_image, ivec2(p), vec4(3.0)); }\n");
     run_ = std::make_unique<GraphRun>(chain(), "join.sum", passes, options_);
     run_->run(4);
     expect(1004, 1040, "before any swap");
@@ -208,6 +224,38 @@ TEST_F(SwapChain, AnEditedShaderIsTakenAndABrokenOneIsNot) {
   run_->executor().reloadShaders();
   run_->run();
   expect(1010, 1100, "mended");
+}
+
+TEST_F(SwapChain, AFrameThatCouldNotBeRecordedNeverWas) {
+  swap(chain("own.Other"));  // a's history is new
+  Join::fails = true;
+  EXPECT_THROW(run_->run(), RuntimeError);
+  Join::fails = false;
+  run_->run();
+  expect(1001, 1050, "the frame after it");
+}
+
+TEST_F(SwapChain, AGraphThatWasTakenFromAnExecutorCanBeGivenBack) {
+  run_->executor().swap(run_->executor().graph());
+  run_->run();
+  expect(1005, 1050, "the same graph");
+  graph::CompiledGraph changed = run_->executor().graph();
+  for (graph::CompiledPass& pass : changed.passes)
+    if (pass.name == "b") pass.params["fixedStep"] = int32_t{5};
+  run_->executor().swap(std::move(changed));
+  run_->run();
+  expect(1006, 1065, "another parameter");
+}
+
+TEST_F(SwapChain, NothingCanBeReadBeforeTheNewGraphHasRun) {
+  run_->executor().swap(run_->compile(R"({"g": {"type": "own.Paint"}, "h": {"type": "own.Paint"}})", "g.image", [&] {
+    GraphRun::Options o = options_;
+    o.keepAll = false;
+    return o;
+  }()));
+  EXPECT_THROW(run_->executor().read("o"), InputError);
+  run_->run();
+  EXPECT_EQ(run_->executor().read("o").rgba[0], 3.0f);
 }
 
 TEST_F(SwapChain, ManySwapsWithFramesInFlight) {

@@ -128,6 +128,18 @@ TEST_F(Live, ABrokenShaderIsToldAndTheOldOneGoesOnUntilItIsMended) {
   EXPECT_EQ(frame(), 1103u);
 }
 
+TEST_F(Live, WhatOnlyTheBrokenVersionReadsIsLookedAtToo) {
+  frame();
+  write("count.glsl", std::string("#include \"extra.glsl\"\n") + kShader);
+  EXPECT_NE(only(live::Event::Kind::Shader).error.find("extra.glsl"), std::string::npos);
+  EXPECT_EQ(frame(), 1002u);
+  write("extra.glsl", "nonsense\n");
+  EXPECT_NE(only(live::Event::Kind::Shader).error.find("extra.glsl:1"), std::string::npos);
+  write("extra.glsl", "// nothing\n");
+  EXPECT_EQ(only(live::Event::Kind::Shader).error, "");
+  EXPECT_EQ(frame(), 1003u);
+}
+
 TEST_F(Live, AnEditedGraphIsTakenAndHistoryGoesOnWherePortsAreUnchanged) {
   frame();
   writeGraph(50);
@@ -222,6 +234,25 @@ TEST_F(LivePlugin, ARebuiltPluginIsTakenWithItsCodeAndItsDescription) {
   EXPECT_EQ(events[0].error, "");
   EXPECT_EQ(frame(), 2u) << "the code of the new library";
   EXPECT_EQ(registry_->find("live.Paint")->params.size(), 1u);
+}
+
+TEST_F(LivePlugin, AGraphOfBeforeAReloadIsNotMixedWithTheNewCode) {
+  EXPECT_EQ(frame(), 1u);
+  manifest(2);
+  registry_->reload("live");
+  EXPECT_THROW(session_->executor().reloadShaders(), RuntimeError);
+  EXPECT_EQ(frame(), 1u);
+}
+
+TEST_F(LivePlugin, ALibraryThatTheGraphIsWaitingForIsLookedAt) {
+  const std::string graph = folder_.path() + "/graph.json",
+                    good = R"({"type": "live.Paint", "params": {"strength": 0.5}})";
+  folder_.write("graph.json", R"({"version": 1, "passes": {"p": )" + good + R"(}, "outputs": {"o": "p.word"}})");
+  ASSERT_EQ(session_->poll().size(), 1u);
+  EXPECT_EQ(frame(), 1u) << "version 1 has no such parameter";
+  manifest(2);
+  for (const live::Event& event : session_->poll()) EXPECT_EQ(event.error, "");
+  EXPECT_EQ(frame(), 2u);
 }
 
 TEST_F(LivePlugin, ABrokenLibraryIsToldAndTheOldOneGoesOn) {
