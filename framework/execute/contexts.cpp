@@ -21,26 +21,26 @@ std::string hint(const std::string& name, const std::vector<std::string>& known)
 
 template <typename Base>
 template <typename T>
-T Answers<Base>::get(const std::string& param) const {
+T Answers<Base>::get(std::string_view param) const {
   const graph::CompiledPass& pass = runtime_.compiled();
   const auto found = pass.params.find(param);
   if (found == pass.params.end()) {
     std::vector<std::string> known;
     for (const auto& [name, value] : pass.params) known.push_back(name);
     throw InputError(fmt::format("{} ({}) asks for parameter '{}', which it doesn't declare{}", pass.name, pass.type,
-                                 param, hint(param, known)));
+                                 param, hint(std::string(param), known)));
   }
   if (!std::holds_alternative<T>(found->second)) {
     throw InputError(
         fmt::format("{} ({}) asks for parameter '{}' as another type than it declares", pass.name, pass.type, param));
   }
   // What a pass looked at while it prepared, its kernels may depend on.
-  if constexpr (std::is_same_v<Base, PrepareContext>) runtime_.asked_.insert(param);
+  if constexpr (std::is_same_v<Base, PrepareContext>) runtime_.asked_.emplace(param);
   return std::get<T>(found->second);
 }
 
 template <typename Base>
-bool Answers<Base>::connected(const std::string& input) const {
+bool Answers<Base>::connected(std::string_view input) const {
   const graph::CompiledPass& pass = runtime_.compiled();
   for (const graph::Binding& b : pass.inputs) {
     if (b.port == input) return b.resource != graph::kNone;

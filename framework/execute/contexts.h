@@ -10,11 +10,11 @@ template <typename Base>
 class Answers : public Base {
  public:
   explicit Answers(PassRuntime& runtime) : runtime_(runtime) {}
-  bool boolean(const std::string& param) const override { return get<bool>(param); }
-  int integer(const std::string& param) const override { return get<int32_t>(param); }
-  float number(const std::string& param) const override { return get<float>(param); }
-  std::string text(const std::string& param) const override { return get<std::string>(param); }
-  bool connected(const std::string& input) const override;
+  bool boolean(std::string_view param) const override { return get<bool>(param); }
+  int integer(std::string_view param) const override { return get<int32_t>(param); }
+  float number(std::string_view param) const override { return get<float>(param); }
+  std::string text(std::string_view param) const override { return get<std::string>(param); }
+  bool connected(std::string_view input) const override;
   uint32_t width() const override { return runtime_.shared_.graph->width; }
   uint32_t height() const override { return runtime_.shared_.graph->height; }
   std::string sceneFolder() const override { return runtime_.shared_.sceneFolder; }
@@ -24,7 +24,7 @@ class Answers : public Base {
 
  private:
   template <typename T>
-  T get(const std::string& param) const;
+  T get(std::string_view param) const;
 };
 
 class Preparing final : public Answers<PrepareContext> {

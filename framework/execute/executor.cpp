@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <weir/core/error.h>
 #include <weir/execute/executor.h>
+#include <weir/gpu/barrier.h>
 
 #include <algorithm>
 #include <chrono>
@@ -147,6 +148,9 @@ void Executor::record(Slot& slot, uint32_t slotIndex, const FrameInput& input) {
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   gpu::check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
   runtime_->record(slot.commands, input, slotIndex, {slot.queries, slot.times.cpu});
+  if (options_.countRays)  // the host reads the count
+    gpu::memoryBarrier(slot.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
   gpu::check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer");
 }
 

@@ -155,8 +155,8 @@ void GraphRuntime::makeBarriers() {
       VkImageMemoryBarrier2& b =
           barriers_[p].images.emplace_back(toGeneral(resources_->at(s.resource, 0, false).image));
       b.srcStageMask = vulkanStages(s.from);
-      // Nothing has to be made available: the waits do that. It tells the validation layers that this image's uses in
-      // the last frame are in the chain.
+      // What this image itself was written with in the last frame is made available before its content is dropped. What
+      // others wrote into the memory, the waits make available.
       b.srcAccessMask = readAccess(s.from) | writeAccess(s.from);
       b.dstStageMask = vulkanStages(pass.stages);
       b.dstAccessMask = readAccess(pass.stages) | writeAccess(pass.stages);

@@ -17,6 +17,21 @@ bool sameType(const PortType& a, const PortType& b) {
   return compatible(a, b) && a.layout.emptyWord == b.layout.emptyWord;
 }
 
+/// Whether all who read a resource as previous, and did so in the graph before, read the same one there. One that read
+/// another has another producer from now on, and starts without a past.
+bool sameReaders(const graph::CompiledGraph& before, const graph::CompiledGraph& now, uint32_t resource) {
+  for (const graph::CompiledPass& pass : now.passes)
+    for (const graph::Binding& b : pass.inputs) {
+      if (!b.previous || b.resource != resource) continue;
+      for (const graph::CompiledPass& old : before.passes)
+        for (const graph::Binding& o : old.inputs)
+          if (old.name == pass.name && o.port == b.port && o.previous &&
+              before.resources[o.resource].name != now.resources[resource].name)
+            return false;
+    }
+  return true;
+}
+
 /// Whether history may go on as if nothing had happened: the same values, made by the same pass.
 bool sameHistory(const graph::CompiledGraph& ga, const graph::Resource& a, const graph::CompiledGraph& gb,
                  const graph::Resource& b) {
@@ -157,7 +172,9 @@ Resources::Resources(const gpu::Device& device, const graph::CompiledGraph& grap
     std::shared_ptr<Copies>& copies = copies_.emplace_back();
     if (r.external) continue;
     for (size_t k = 0; r.history && before && k < before->copies_.size(); ++k)
-      if (sameHistory(graph, r, *before->graph_, before->graph_->resources[k])) copies = before->copies_[k];
+      if (sameHistory(graph, r, *before->graph_, before->graph_->resources[k]) &&
+          sameReaders(*before->graph_, graph, i))
+        copies = before->copies_[k];
     if (copies) {
       if (std::count(before->fresh_.begin(), before->fresh_.end(), indexIn(*before, copies)) > 0) fresh_.push_back(i);
       continue;

@@ -36,7 +36,7 @@ struct OutputLink {
 struct Node {
   const PassEntry* entry = nullptr;
   const PassDescription* type = nullptr;  ///< nullptr: unknown, and said so
-  std::map<std::string, ParamValue> params;
+  std::map<std::string, ParamValue, std::less<>> params;
   std::vector<Link> links;
   std::vector<uint32_t> perPixel;  ///< of each output; 0: could not be found out, and said why
 

@@ -84,10 +84,10 @@ struct ImageStart {
 
 struct CompiledPass {
   std::string name, type;
-  const PassDescription* description = nullptr;  ///< owned by the registry
-  std::map<std::string, ParamValue> params;      ///< complete: defaults filled in, types as described
-  std::vector<Binding> inputs, outputs;          ///< in the description's order; outputs are never kNone
-  std::vector<uint32_t> scratch;                 ///< resources of its own: known once the pass is prepared
+  const PassDescription* description = nullptr;           ///< owned by the registry
+  std::map<std::string, ParamValue, std::less<>> params;  ///< complete: defaults filled in, types as described
+  std::vector<Binding> inputs, outputs;                   ///< in the description's order; outputs are never kNone
+  std::vector<uint32_t> scratch;                          ///< resources of its own: known once the pass is prepared
   Stages stages = 0;                     ///< what it runs in; until it is prepared, what its description suggests
   std::vector<Dependency> dependencies;  ///< everything that it has to wait for
   std::vector<Wait> waits;               ///< the barriers that stand before it, one command together with

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -38,11 +39,11 @@ struct TextureData {
 class PassContext {
  public:
   virtual ~PassContext() = default;
-  virtual bool boolean(const std::string& param) const = 0;
-  virtual int integer(const std::string& param) const = 0;
-  virtual float number(const std::string& param) const = 0;
-  virtual std::string text(const std::string& param) const = 0;  ///< String, or an Enum's choice
-  virtual bool connected(const std::string& input) const = 0;
+  virtual bool boolean(std::string_view param) const = 0;
+  virtual int integer(std::string_view param) const = 0;
+  virtual float number(std::string_view param) const = 0;
+  virtual std::string text(std::string_view param) const = 0;  ///< String, or an Enum's choice
+  virtual bool connected(std::string_view input) const = 0;
   virtual uint32_t width() const = 0;  ///< of the frame
   virtual uint32_t height() const = 0;
   virtual std::string sceneFolder() const = 0;

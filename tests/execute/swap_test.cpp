@@ -159,6 +159,23 @@ TEST_F(SwapChain, AToggleThatChangesTheProducerClearsWhatItProducedAndNothingEls
   expect(1008, 1010, "after enabling again");
 }
 
+TEST_F(SwapChain, AToggleClearsAlsoWhereTheNewProducerHadAPastAlready) {
+  // b's past is read by d before the toggle, and from then on by b too.
+  const auto graph = [](bool enabled) {
+    std::string text = chain("own.Counter", "1", enabled);
+    text.replace(text.rfind('}'), 1, R"(, "d": {"type": "own.Counter", "inputs": {"before": "b.after@previous"}}})");
+    const std::string y = R"("y": "b.after")";
+    return text.replace(text.find(y), y.size(), R"("y": "d.after")");
+  };
+  swap(graph(true));
+  run_->run(3);
+  const uint32_t before = value("b.after");
+  EXPECT_EQ(before, 1070u);
+  swap(graph(false));
+  run_->run();
+  EXPECT_EQ(value("b.after"), 1010u);
+}
+
 TEST_F(SwapChain, AnotherTypeOfProducerStartsAnew) {
   swap(chain("own.Other"));
   run_->run();

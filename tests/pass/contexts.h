@@ -5,6 +5,7 @@
 #include <weir/pass/pass.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace weir {
@@ -12,13 +13,13 @@ namespace weir {
 template <typename Base>
 class Answering : public Base {
  public:
-  bool boolean(const std::string&) const override { return true; }
-  int integer(const std::string& param) const override {
-    throw InputError("it asks for parameter '" + param + "', which it doesn't declare (nearest: 'amount')");
+  bool boolean(std::string_view) const override { return true; }
+  int integer(std::string_view param) const override {
+    throw InputError("it asks for parameter '" + std::string(param) + "', which it doesn't declare (nearest: 'amount')");
   }
-  float number(const std::string&) const override { return 1; }
-  std::string text(const std::string&) const override { return "a"; }
-  bool connected(const std::string&) const override { return true; }
+  float number(std::string_view) const override { return 1; }
+  std::string text(std::string_view) const override { return "a"; }
+  bool connected(std::string_view) const override { return true; }
   uint32_t width() const override { return 64; }
   uint32_t height() const override { return 64; }
   std::string sceneFolder() const override { return {}; }
