@@ -104,6 +104,7 @@ void Executor::restart(graph::CompiledGraph graph) {
     throw;
   }
   finish();  // frames in flight use what is about to go
+  captureTo({}, {});
   const auto name = [](const graph::CompiledPass& pass) { return pass.name; };
   const bool samePasses = std::ranges::equal(next->graph().passes, runtime_->graph().passes, {}, name, name);
   runtime_ = std::move(next);
@@ -118,6 +119,7 @@ void Executor::collect(Slot& slot) {
              "vkWaitForFences");
   gpu::check(vkResetFences(device_.handle(), 1, &slot.fence), "vkResetFences");
   slot.busy = false;
+  deliver(slot);
   if (slot.queries != VK_NULL_HANDLE) {
     // The fence says that they are there: nothing waits here.
     gpu::check(
@@ -142,19 +144,22 @@ void Executor::collect(Slot& slot) {
   rays_ = count;
 }
 
-void Executor::record(Slot& slot, uint32_t slotIndex, const FrameInput& input) {
+void Executor::record(Slot& slot, uint32_t slotIndex, const FrameInput& input, bool capture) {
   gpu::check(vkResetCommandPool(device_.handle(), slot.pool, 0), "vkResetCommandPool");
   VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   gpu::check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
+  const uint32_t parity = scene_.parity();
   runtime_->record(slot.commands, input, slotIndex, {slot.queries, slot.times.cpu});
+  slot.captured = capture && !captured_.empty();
+  if (slot.captured) recordCaptures(slot, parity);
   if (options_.countRays)  // the host reads the count
     gpu::memoryBarrier(slot.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                        VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
   gpu::check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer");
 }
 
-void Executor::frame(const FrameInput& input) {
+void Executor::frame(const FrameInput& input, bool capture) {
   const auto slotIndex = static_cast<uint32_t>(scene_.frames() % kSlots);
   Slot& slot = slots_[slotIndex];
   collect(slot);  // waits for the frame before last: no work of this one's
@@ -164,7 +169,7 @@ void Executor::frame(const FrameInput& input) {
     scene_.rayCounter().flush();
   }
   const Clock::time_point start = Clock::now();
-  record(slot, slotIndex, input);
+  record(slot, slotIndex, input, capture);
   VkCommandBufferSubmitInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
   commands.commandBuffer = slot.commands;
   VkSubmitInfo2 submit{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};

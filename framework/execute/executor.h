@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <set>
 #include <span>
@@ -49,11 +50,17 @@ class Executor {
 
   /// The next frame starts without history, as the first one does.
   void resetHistory() { scene_.forget(); }
-  /// Records and submits; returns before the GPU is done. Throws RuntimeError (device lost, …).
-  void frame(const FrameInput& input);
+  /// Records and submits; returns before the GPU is done. Throws RuntimeError (device lost, …). With `capture` the
+  /// outputs named by captureTo() are brought to the host by the same submission.
+  void frame(const FrameInput& input, bool capture = false);
   /// Waits for everything submitted.
   void finish();
 
+  /// What becomes of captured pictures: called once for each output of each captured frame, in order, from within a
+  /// later frame() or finish(), when the frame is over. So nobody waits for a picture. Names as for read(). A swap that
+  /// changes anything but parameters ends it.
+  using Sink = std::function<void(const std::string& output, const image::Picture&)>;
+  void captureTo(const std::vector<std::string>& outputs, Sink sink);
   /// A graph output of the last frame, after finish(); images only: buffers and unknown names throw InputError.
   image::Picture read(const std::string& output);
   /// Meaning of an output port: how a PNG must encode it.
@@ -83,14 +90,25 @@ class Executor {
     VkFence fence = VK_NULL_HANDLE;
     VkQueryPool queries = VK_NULL_HANDLE;
     bool busy = false;
+    std::vector<gpu::Buffer> captures;  ///< by captured output
+    bool captured = false;
     FrameTimes times;
+  };
+  struct Captured {
+    std::string output;
+    uint32_t resource = graph::kNone;
+    bool previous = false;
+    image::Picture picture;  ///< filled anew for each frame
   };
 
   void makeSlots();
   void freeSlots();
   void makeTimers();
   void collect(Slot& slot);
-  void record(Slot& slot, uint32_t slotIndex, const FrameInput& input);
+  void record(Slot& slot, uint32_t slotIndex, const FrameInput& input, bool capture);
+  const graph::GraphOutput& outputImage(const std::string& output) const;
+  void recordCaptures(const Slot& slot, uint32_t parity) const;
+  void deliver(Slot& slot);
   uint32_t resourceNamed(const std::string& name) const;
   std::vector<std::byte> download(const Storage& storage);
 
@@ -103,6 +121,8 @@ class Executor {
   graph::CompiledGraph source_;  ///< as it was given, without what passes add
   std::unique_ptr<GraphRuntime> runtime_;
   std::array<Slot, kSlots> slots_;
+  std::vector<Captured> captured_;
+  Sink sink_;
   std::vector<uint64_t> ticks_;
   std::vector<FrameTimes> times_;  ///< a ring, allocated once
   size_t firstTime_ = 0, timesHeld_ = 0;

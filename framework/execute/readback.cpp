@@ -3,10 +3,13 @@
 #include <weir/core/error.h>
 #include <weir/core/text.h>
 #include <weir/execute/executor.h>
+#include <weir/gpu/barrier.h>
 
 #include <glm/gtc/packing.hpp>
 
 #include <cstring>
+#include <span>
+#include <utility>
 
 namespace weir::execute {
 namespace {
@@ -49,6 +52,15 @@ void unpackPixel(const std::byte* from, Format format, float* to) {
       break;
     }
   }
+}
+
+void unpack(std::span<const std::byte> bytes, const graph::Resource& resource, image::Picture& picture) {
+  picture.width = resource.width;
+  picture.height = resource.height;
+  picture.rgba.resize(4 * size_t{resource.width} * resource.height);
+  const uint32_t texel = formatBytes(resource.type.format);
+  for (size_t i = 0; i < picture.rgba.size() / 4; ++i)
+    unpackPixel(&bytes[i * texel], resource.type.format, &picture.rgba[4 * i]);
 }
 
 }  // namespace
@@ -139,7 +151,7 @@ Meaning Executor::meaning(const std::string& output) const {
   return Meaning::Data;
 }
 
-image::Picture Executor::read(const std::string& output) {
+const graph::GraphOutput& Executor::outputImage(const std::string& output) const {
   std::vector<std::string> names;
   for (const graph::GraphOutput& o : graph().outputs) names.push_back(o.name);
   const graph::GraphOutput* found = graph().findOutput(output);
@@ -155,20 +167,59 @@ image::Picture Executor::read(const std::string& output) {
   }
   if (resource.external)
     throw InputError(fmt::format("output '{}' ({}) is the host's: ask the host for it", output, resource.name));
+  return *found;
+}
+
+image::Picture Executor::read(const std::string& output) {
+  const graph::GraphOutput& found = outputImage(output);
   if (!runtime_->recorded())
     throw InputError(fmt::format("output '{}' can't be read before graph '{}' has run", output, graph().name));
   finish();
   const uint32_t parity = static_cast<uint32_t>((scene_.frames() + 1) & 1u);
-  const std::vector<std::byte> bytes = download(runtime_->resources().at(found->resource, parity, found->previous));
+  const std::vector<std::byte> bytes = download(runtime_->resources().at(found.resource, parity, found.previous));
   image::Picture picture;
-  picture.width = resource.width;
-  picture.height = resource.height;
-  picture.rgba.resize(4 * size_t{resource.width} * resource.height);
-  const uint32_t texel = formatBytes(resource.type.format);
-  for (size_t i = 0; i < picture.rgba.size() / 4; ++i) {
-    unpackPixel(&bytes[i * texel], resource.type.format, &picture.rgba[4 * i]);
-  }
+  unpack(bytes, graph().resources[found.resource], picture);
   return picture;
+}
+
+void Executor::captureTo(const std::vector<std::string>& outputs, Sink sink) {
+  finish();
+  captured_.clear();
+  for (const std::string& output : outputs) {
+    const graph::GraphOutput& found = outputImage(output);
+    captured_.push_back({output, found.resource, found.previous, {}});
+  }
+  sink_ = std::move(sink);
+  for (Slot& slot : slots_) {
+    slot.captures.clear();
+    for (const Captured& c : captured_)
+      slot.captures.emplace_back(device_, graph().resources[c.resource].bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                 gpu::Residency::Readback, "captured " + c.output);
+  }
+}
+
+void Executor::recordCaptures(const Slot& slot, uint32_t parity) const {
+  constexpr VkPipelineStageFlags2 kCopy = VK_PIPELINE_STAGE_2_COPY_BIT, kAll = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  gpu::memoryBarrier(slot.commands, kAll, VK_ACCESS_2_MEMORY_WRITE_BIT, kCopy, VK_ACCESS_2_TRANSFER_READ_BIT);
+  for (size_t i = 0; i < captured_.size(); ++i) {
+    const gpu::Image& image = runtime_->resources().at(captured_[i].resource, parity, captured_[i].previous).image;
+    const VkBufferImageCopy copy = wholeImage(image);
+    vkCmdCopyImageToBuffer(slot.commands, image.handle(), VK_IMAGE_LAYOUT_GENERAL, slot.captures[i].handle(), 1, &copy);
+  }
+  // The host reads the copies; the next frame overwrites the images.
+  gpu::memoryBarrier(slot.commands, kCopy, VK_ACCESS_2_TRANSFER_WRITE_BIT, kAll | VK_PIPELINE_STAGE_2_HOST_BIT,
+                     VK_ACCESS_2_HOST_READ_BIT);
+}
+
+/// Hands over what a frame that is over has captured.
+void Executor::deliver(Slot& slot) {
+  if (!std::exchange(slot.captured, false)) return;
+  for (size_t i = 0; i < captured_.size(); ++i) {
+    const graph::Resource& resource = graph().resources[captured_[i].resource];
+    slot.captures[i].invalidate();
+    unpack(std::span(slot.captures[i].mapped(), resource.bytes), resource, captured_[i].picture);
+    sink_(captured_[i].output, captured_[i].picture);
+  }
 }
 
 }  // namespace weir::execute

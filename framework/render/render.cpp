@@ -181,17 +181,16 @@ void render(const RenderOptions& o) {
   Player player(stage);
   std::map<std::string, image::RestartAccumulator> means;
   std::vector<execute::FrameTimes> times;
+  std::map<std::string, FrameMean> window;
+  executor.captureTo(names, [&](const std::string& name, const image::Picture& picture) { window[name].add(picture); });
   for (uint32_t r = 0; r < o.restarts; ++r) {
     executor.resetHistory();
-    std::map<std::string, FrameMean> window;
+    window.clear();
     for (uint32_t f = 0; f < o.frames; ++f) {
-      executor.frame(player.frame(o.firstFrame + f, restartSeed(o.seed, r)));
+      executor.frame(player.frame(o.firstFrame + f, restartSeed(o.seed, r)), f + o.average >= o.frames);
       if (r == 0 && f == 0 && !o.statistics.empty()) {
         executor.finish();
         facts.firstFrameSeconds = secondsSince(begin);
-      }
-      if (f + o.average >= o.frames) {
-        for (const std::string& name : names) window[name].add(executor.read(name));
       }
       for (execute::FrameTimes& t : executor.takeTimes()) times.push_back(std::move(t));
       if (o.progress) o.progress(uint64_t{r} * o.frames + f + 1, uint64_t{o.restarts} * o.frames);

@@ -15,7 +15,8 @@ class Answering : public Base {
  public:
   bool boolean(std::string_view) const override { return true; }
   int integer(std::string_view param) const override {
-    throw InputError("it asks for parameter '" + std::string(param) + "', which it doesn't declare (nearest: 'amount')");
+    throw InputError("it asks for parameter '" + std::string(param) +
+                     "', which it doesn't declare (nearest: 'amount')");
   }
   float number(std::string_view) const override { return 1; }
   std::string text(std::string_view) const override { return "a"; }
