@@ -171,14 +171,7 @@ Resources::Resources(const gpu::Device& device, const graph::CompiledGraph& grap
     const graph::Resource& r = graph.resources[i];
     std::shared_ptr<Copies>& copies = copies_.emplace_back();
     if (r.external) continue;
-    for (size_t k = 0; r.history && before && k < before->copies_.size(); ++k)
-      if (sameHistory(graph, r, *before->graph_, before->graph_->resources[k]) &&
-          sameReaders(*before->graph_, graph, i))
-        copies = before->copies_[k];
-    if (copies) {
-      if (std::count(before->fresh_.begin(), before->fresh_.end(), indexIn(*before, copies)) > 0) fresh_.push_back(i);
-      continue;
-    }
+    if (r.history && before != nullptr && adopt(*before, i)) continue;
     copies = std::make_shared<Copies>();
     (*copies)[0] = make(r, r.history ? r.name + " (even)" : r.name);
     if (r.history) {
@@ -198,10 +191,17 @@ Resources::Resources(const gpu::Device& device, const graph::CompiledGraph& grap
   });
 }
 
-uint32_t Resources::indexIn(const Resources& resources, const std::shared_ptr<Copies>& copies) {
-  for (uint32_t i = 0; i < resources.copies_.size(); ++i)
-    if (resources.copies_[i] == copies) return i;
-  return graph::kNone;
+/// Goes on with history that is the same in the graph before; false when there is none such.
+bool Resources::adopt(const Resources& before, uint32_t resource) {
+  const graph::Resource& r = graph_->resources[resource];
+  for (uint32_t k = 0; k < before.copies_.size(); ++k) {
+    if (!sameHistory(*graph_, r, *before.graph_, before.graph_->resources[k])) continue;
+    if (!sameReaders(*before.graph_, *graph_, resource)) continue;
+    copies_[resource] = before.copies_[k];
+    if (std::count(before.fresh_.begin(), before.fresh_.end(), k) > 0) fresh_.push_back(resource);
+    return true;
+  }
+  return false;
 }
 
 const Storage& Resources::at(uint32_t resource, uint32_t parity, bool previous) const {

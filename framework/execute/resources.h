@@ -56,7 +56,7 @@ class Resources {
 
  private:
   using Copies = std::array<Storage, 2>;  ///< the second one is empty without history
-  static uint32_t indexIn(const Resources& resources, const std::shared_ptr<Copies>& copies);
+  bool adopt(const Resources& before, uint32_t resource);
   const graph::CompiledGraph* graph_;
   std::vector<gpu::Memory> blocks_;
   std::vector<std::shared_ptr<Copies>> copies_;   ///< shared while one graph follows another

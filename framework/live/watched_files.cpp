@@ -27,7 +27,7 @@ void WatchedFiles::watch(const std::vector<std::string>& files, Moment before) {
       continue;
     }
     const Seen seen = look(file);
-    wanted[file] = seen.written > before ? Seen{} : seen;
+    wanted[file] = seen.written.isAfter(before) ? Seen{} : seen;
   }
   files_ = std::move(wanted);
 }

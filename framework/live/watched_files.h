@@ -1,7 +1,6 @@
 // Notices that files changed: by looking at them, as that works for every editor, on every file system.
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -14,7 +13,10 @@ class WatchedFiles {
   /// A point in time, by the clock that files are dated with.
   struct Moment {
     int64_t seconds = 0, nanoseconds = 0;
-    auto operator<=>(const Moment&) const = default;
+    bool operator==(const Moment&) const = default;
+    bool isAfter(const Moment& other) const {
+      return seconds != other.seconds ? seconds > other.seconds : nanoseconds > other.nanoseconds;
+    }
   };
   static Moment now();
 
