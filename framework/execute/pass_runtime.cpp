@@ -6,6 +6,8 @@
 #include <weir/execute/contexts.h>
 #include <weir/execute/pass_runtime.h>
 
+#include <filesystem>
+
 namespace weir::execute {
 
 PassRuntime::PassRuntime(Shared& shared, uint32_t index) : shared_(shared), index_(index) {
@@ -83,7 +85,25 @@ std::vector<uint32_t> PassRuntime::compile(KernelKind kind, shader::Stage stage,
   r.includeFolders.push_back(commonShaderFolder().string());
   for (const auto& [name, text] : options.sources) r.virtualFiles[name] = text;
   r.defines = options.defines;
+  checkFile(file, r);
   return compile(r);
+}
+
+/// The compiler would say it too, but of the text that is put before a kernel, and without the nearest name.
+void PassRuntime::checkFile(const std::string& file, const shader::CompileRequest& request) const {
+  if (request.virtualFiles.count(file) != 0) return;
+  std::vector<std::string> known;
+  for (const std::string& folder : request.includeFolders) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(std::filesystem::path(folder) / file, error)) return;
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+      known.push_back(entry->path().filename().string());
+    if (shared_.services.files) shared_.services.files->insert((std::filesystem::path(folder) / file).string());
+  }
+  const std::string nearest = nearestName(file, known);
+  throw InputError(fmt::format("{} ({}): there is no shader '{}' in {}{}", compiled().name, compiled().type, file,
+                               fmt::join(request.includeFolders, " or "),
+                               nearest.empty() ? "" : fmt::format(" (nearest: '{}')", nearest)));
 }
 
 std::vector<uint32_t> PassRuntime::compile(const shader::CompileRequest& request) {

@@ -98,6 +98,7 @@ class PassRuntime {
   void fillPush();
   uint32_t addScratch(graph::Resource resource);
   Kernel addKernel(KernelKind kind, const std::string& file, const KernelOptions& options);
+  void checkFile(const std::string& file, const shader::CompileRequest& request) const;
   std::vector<uint32_t> compile(const shader::CompileRequest& request);
   std::vector<uint32_t> compile(KernelKind kind, shader::Stage stage, const std::string& file,
                                 const KernelOptions& options);

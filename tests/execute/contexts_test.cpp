@@ -90,7 +90,7 @@ TEST(Contexts, ShaderErrorsNameFileAndLine) {
   expectWords(with("open.glsl"), {"open.glsl:4", "in_maybe"});
   expectWords(with("camera.glsl"), {"camera.glsl:2", "camera"});
   expectWords(with("scene.glsl"), {"scene.glsl:1", "sceneTriangles"});
-  expectWords(with("absent.glsl"), {"absent.glsl"});
+  expectWords(with("brokn.glsl"), {"there is no shader 'brokn.glsl'", "nearest: 'broken.glsl'"});
 }
 
 TEST(Contexts, ScratchComesBeforeKernelsAndBindsByName) {
