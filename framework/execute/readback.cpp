@@ -58,6 +58,10 @@ void unpack(std::span<const std::byte> bytes, const graph::Resource& resource, i
   picture.width = resource.width;
   picture.height = resource.height;
   picture.rgba.resize(4 * size_t{resource.width} * resource.height);
+  if (resource.type.format == Format::RGBA32F) {  // as it is
+    std::memcpy(picture.rgba.data(), bytes.data(), picture.rgba.size() * sizeof(float));
+    return;
+  }
   const uint32_t texel = formatBytes(resource.type.format);
   for (size_t i = 0; i < picture.rgba.size() / 4; ++i)
     unpackPixel(&bytes[i * texel], resource.type.format, &picture.rgba[4 * i]);

@@ -1,4 +1,7 @@
+#include <weir/core/parallel.h>
 #include <weir/render/mean.h>
+
+#include <algorithm>
 
 namespace weir::render {
 
@@ -8,7 +11,12 @@ void FrameMean::add(const image::Picture& picture) {
     height_ = picture.height;
     sum_.assign(picture.rgba.size(), 0.0);
   }
-  for (size_t i = 0; i < sum_.size(); ++i) sum_[i] += picture.rgba[i];
+  // In pieces, as a large picture would take one core longer than a GPU takes for the next one.
+  constexpr size_t kPiece = size_t{1} << 18;
+  parallelFor((sum_.size() + kPiece - 1) / kPiece, [&](size_t piece) {
+    const size_t end = std::min(sum_.size(), (piece + 1) * kPiece);
+    for (size_t i = piece * kPiece; i < end; ++i) sum_[i] += picture.rgba[i];
+  });
   ++count_;
 }
 

@@ -76,6 +76,22 @@ TEST(FrameMean, KeepsDoublePrecision) {
   EXPECT_EQ(p.rgba[4], (kFrames - 1) / 2.0f);
 }
 
+TEST(FrameMean, TakesEveryNumberOfALargePicture) {
+  constexpr uint32_t kWidth = 521, kHeight = 307;  // more than two pieces, the last one smaller
+  image::Picture even{kWidth, kHeight, std::vector<float>(size_t{4} * kWidth * kHeight), {}}, odd = even;
+  for (size_t i = 0; i < even.rgba.size(); ++i) {
+    even.rgba[i] = static_cast<float>(i);
+    odd.rgba[i] = static_cast<float>(i) + 2.0f;
+  }
+  FrameMean mean;
+  for (int f = 0; f < 5; ++f) {
+    mean.add(even);
+    mean.add(odd);
+  }
+  const image::Picture p = mean.mean();
+  for (size_t i = 0; i < p.rgba.size(); ++i) ASSERT_EQ(p.rgba[i], static_cast<float>(i) + 1.0f) << i;
+}
+
 TEST(FrameMean, PassesOnWhatIsNotFinite) {
   FrameMean mean;
   mean.add({1, 1, {1.0f, INFINITY, NAN, 1.0f}, {}});
