@@ -123,6 +123,20 @@ class Paint final : public Pass {
   Kernel kernel_;
 };
 
+/// How far the camera moved since the last frame.
+class Step final : public Pass {
+ public:
+  static void describe(PassDescription& d) {
+    d.output("image", storageImage(Format::R32F));
+    d.needs(Need::FrameCamera).needsPrevious(Need::FrameCamera);
+  }
+  void prepare(PrepareContext& c) override { kernel_ = c.kernel("step.glsl"); }
+  void record(RecordContext& c) override { c.launch(kernel_); }
+
+ private:
+  Kernel kernel_;
+};
+
 class SwapChain : public Swap {
  protected:
   void SetUp() override {
@@ -136,6 +150,10 @@ void run(uvec2 pixel) {
     std::vector<WeirPassEntry> passes = kPasses;
     passes.push_back(passEntry<Join>("Join"));
     passes.push_back(passEntry<Paint>("Paint"));
+    passes.push_back(passEntry<Step>("Step"));
+    folder_.write("step.glsl",
+                  "void run(uvec2 p) {\n"
+                  "  imageStore(out_image, ivec2(p), vec4(camera.origin.x - previousCamera.origin.x));\n}\n");
     folder_.write("paint.glsl", "void run(uvec2 p) { imageStore(out_image, ivec2(p), vec4(3.0)); }\n");
     run_ = std::make_unique<GraphRun>(chain(), "join.sum", passes, options_);
     run_->run(4);
@@ -198,6 +216,25 @@ TEST_F(SwapChain, AnotherSizeStartsAnew) {
   run_->run();
   expect(1001, 1010, "after a resize");
   EXPECT_EQ(run_->read("join.sum").size(), 320u);
+}
+
+TEST_F(SwapChain, TheCameraHasNoPastAfterAResizeAndOneAfterAnotherSwap) {
+  const std::string graph = R"({"s": {"type": "own.Step"}})",
+                    more = R"({"s": {"type": "own.Step"}, "t": {"type": "own.Paint"}})";
+  const auto moved = [&](float x) {
+    run_->next.camera.eye.x = x;
+    run_->run();
+    return run_->executor().read("o").rgba[0];
+  };
+  run_->executor().swap(run_->compile(graph, "s.image", options_));
+  moved(1);
+  EXPECT_EQ(moved(3), 2.0f);
+  run_->executor().restart(run_->compile(more, "s.image", options_));
+  EXPECT_EQ(moved(7), 4.0f) << "another graph looks through the same camera";
+  options_.width = 24;
+  run_->executor().swap(run_->compile(graph, "s.image", options_));
+  EXPECT_EQ(moved(12), 0.0f) << "pixels of another size have no past";
+  EXPECT_EQ(moved(13), 1.0f);
 }
 
 TEST_F(SwapChain, TwoSwapsWithoutAFrameBetweenThemLeaveNoRubbish) {

@@ -140,6 +140,17 @@ TEST_F(Live, WhatOnlyTheBrokenVersionReadsIsLookedAtToo) {
   EXPECT_EQ(frame(), 1003u);
 }
 
+TEST_F(Live, WhatTheBrokenVersionReadsNoMoreIsLookedAtStill) {
+  frame();
+  write("count.glsl", "nonsense\n");
+  EXPECT_NE(only(live::Event::Kind::Shader).error, "");
+  write("step.glsl", "uint stepOf(uint p) { return 5u; }\n");
+  EXPECT_NE(only(live::Event::Kind::Shader).error, "") << "noticed, though nothing comes of it yet";
+  write("count.glsl", kShader);
+  EXPECT_EQ(only(live::Event::Kind::Shader).error, "");
+  EXPECT_EQ(frame(), 1006u);
+}
+
 TEST_F(Live, AnEditedGraphIsTakenAndHistoryGoesOnWherePortsAreUnchanged) {
   frame();
   writeGraph(50);
@@ -253,6 +264,18 @@ TEST_F(LivePlugin, ALibraryThatTheGraphIsWaitingForIsLookedAt) {
   manifest(2);
   for (const live::Event& event : session_->poll()) EXPECT_EQ(event.error, "");
   EXPECT_EQ(frame(), 2u);
+}
+
+TEST_F(LivePlugin, HistoryOfAnotherLayoutStartsAnew) {
+  folder_.write("graph.json", R"({"version": 1, "passes": {"p": {"type": "live.Paint",
+      "inputs": {"before": "p.word@previous"}}}, "outputs": {"o": "p.word"}})");
+  ASSERT_EQ(session_->poll().size(), 1u);
+  EXPECT_EQ(frame(), 1u);
+  EXPECT_EQ(frame(), 2u);
+  manifest(2);  // its words are of another version, as large as before
+  for (const live::Event& event : session_->poll()) EXPECT_EQ(event.error, "");
+  EXPECT_EQ(frame(), 2u) << "nothing of the old words";
+  EXPECT_EQ(frame(), 4u);
 }
 
 TEST_F(LivePlugin, ABrokenLibraryIsToldAndTheOldOneGoesOn) {

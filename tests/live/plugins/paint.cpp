@@ -15,7 +15,7 @@ struct Word {
 template <>
 struct LayoutOf<Word> {
   static constexpr const char* name = "Word";
-  static constexpr uint32_t version = 1, emptyWord = 0;
+  static constexpr uint32_t version = LIVE_VERSION, emptyWord = 0;
   static constexpr std::array<Field, 1> fields{{{"uint", "value"}}};
 };
 
@@ -24,6 +24,7 @@ namespace {
 class Paint final : public Pass {
  public:
   static void describe(PassDescription& d) {
+    d.input("before", perPixel<Word>()).optional();
     d.output("word", perPixel<Word>());
     if (LIVE_VERSION > 1) d.param("strength", 1.0f).range(0, 1);
   }

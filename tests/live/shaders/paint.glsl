@@ -1,3 +1,7 @@
 void run(uvec2 pixel) {
-  out_word[pixel.y * frameWidth + pixel.x].value = VERSION;
+  const uint i = pixel.y * frameWidth + pixel.x;
+  out_word[i].value = VERSION;
+#ifdef has_in_before
+  out_word[i].value += in_before[i].value;
+#endif
 }
