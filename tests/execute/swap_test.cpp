@@ -1,6 +1,9 @@
 // One graph takes another's place between two frames: what of it goes on, what starts anew, and what is left when the
 // new one cannot be had.
+#include <weir/gpu/vulkan.h>
+
 #include <fstream>
+#include <utility>
 
 #include "execute/graph_run.h"
 
@@ -123,6 +126,30 @@ class Paint final : public Pass {
   Kernel kernel_;
 };
 
+class Scratchy final : public Pass {
+ public:
+  static void describe(PassDescription& d) { d.output("word", perPixel<Word>()); }
+  void prepare(PrepareContext& c) override {
+    c.scratch("half", perPixel<Word>());
+    first_ = c.kernel("scratchy.glsl", {.bind = {{"out_word", "scratch_half"}}, .defines = {}, .sources = {}});
+    second_ = c.kernel("scratchy.glsl", {.bind = {}, .defines = {{"SECOND", "1"}}, .sources = {}});
+  }
+  void record(RecordContext& c) override {
+    c.launch(first_);
+    c.launch(second_);
+  }
+
+ private:
+  Kernel first_, second_;
+};
+
+class Idle final : public Pass {
+ public:
+  static void describe(PassDescription& d) { d.output("word", perPixel<Word>()); }
+  void prepare(PrepareContext& /*context*/) override {}
+  void record(RecordContext& /*context*/) override {}
+};
+
 /// How far the camera moved since the last frame.
 class Step final : public Pass {
  public:
@@ -151,6 +178,18 @@ void run(uvec2 pixel) {
     passes.push_back(passEntry<Join>("Join"));
     passes.push_back(passEntry<Paint>("Paint"));
     passes.push_back(passEntry<Step>("Step"));
+    passes.push_back(passEntry<Scratchy>("Scratchy"));
+    passes.push_back(passEntry<Idle>("Idle"));
+    folder_.write("scratchy.glsl", R"(
+void run(uvec2 p) {
+  const uint i = p.y * frameWidth + p.x;
+#ifdef SECOND
+  out_word[i].value = scratch_half[i].value + 3u;
+#else
+  out_word[i].value = 5u;
+#endif
+}
+)");
     folder_.write("step.glsl",
                   "void run(uvec2 p) {\n"
                   "  imageStore(out_image, ivec2(p), vec4(camera.origin.x - previousCamera.origin.x));\n}\n");
@@ -299,6 +338,46 @@ TEST_F(SwapChain, AGraphThatWasTakenFromAnExecutorCanBeGivenBack) {
   run_->executor().swap(std::move(changed));
   run_->run();
   expect(1006, 1065, "another parameter");
+}
+
+TEST_F(SwapChain, ScratchOfAGraphThatIsGivenBackIsNotAddedTwice) {
+  const std::string graph = R"({"s": {"type": "own.Scratchy"}})";
+  run_->executor().swap(run_->compile(graph, "s.word", options_));
+  const size_t resources = run_->executor().graph().resources.size();
+  EXPECT_EQ(resources, 2u);
+  run_->executor().restart(run_->executor().graph());
+  EXPECT_EQ(run_->executor().graph().resources.size(), resources);
+  run_->run();
+  EXPECT_EQ(value("s.word"), 8u);
+}
+
+TEST_F(SwapChain, APassThatLaunchesNothingTakesItsTurn) {
+  run_->executor().swap(run_->compile(R"({"i": {"type": "own.Idle"}})", "i.word", options_));
+  EXPECT_NE(run_->executor().graph().passes[0].stages, 0) << "so that others wait for it, and it for others";
+  run_->run(2);
+}
+
+PFN_vkCmdPipelineBarrier2 realBarrier = nullptr;
+int fullBarriers = 0;
+void VKAPI_CALL countingBarrier(VkCommandBuffer commands, const VkDependencyInfo* info) {
+  for (uint32_t i = 0; i < info->memoryBarrierCount; ++i)
+    fullBarriers += info->pMemoryBarriers[i].srcStageMask == VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT ? 1 : 0;
+  realBarrier(commands, info);
+}
+
+/// Its plan counts on barriers of the frame before, which were another graph's.
+TEST_F(SwapChain, TheFirstFrameWaitsForAllThatTheGraphBeforeDid) {
+  const auto barriersOfAFrame = [&] {
+    fullBarriers = 0;
+    realBarrier = std::exchange(vkCmdPipelineBarrier2, countingBarrier);
+    run_->run();
+    vkCmdPipelineBarrier2 = realBarrier;
+    return fullBarriers;
+  };
+  EXPECT_EQ(barriersOfAFrame(), 0);
+  run_->executor().restart(run_->compile(chain(), "join.sum", options_));
+  EXPECT_EQ(barriersOfAFrame(), 1);
+  EXPECT_EQ(barriersOfAFrame(), 0);
 }
 
 TEST_F(SwapChain, NothingCanBeReadBeforeTheNewGraphHasRun) {
