@@ -97,6 +97,20 @@ void WeirGraph::bind(Bound b) {
   b.written = isWritten(r);
   b.image.name = b.buffer.name = nullptr;  // the caller's text, which need not stay
   put(b);
+  for (const Bound& other : bound) {
+    if (!b.isImage || !other.isImage || other.slot != b.slot || other.name == b.name ||
+        other.image.image != b.image.image)
+      continue;
+    const auto same = [](const WeirAccess& x, const WeirAccess& y) {
+      return x.stages == y.stages && x.access == y.access && x.layout == y.layout;
+    };
+    if (b.written || other.written || !same(b.image.before, other.image.before) ||
+        !same(b.image.after, other.image.after))
+      throw InputError(
+          fmt::format("'{}' and '{}' are the same image; expected that of two that are only read, handed "
+                      "over in the same way",
+                      b.name, other.name));
+  }
   std::erase_if(bound, [&](const Bound& other) { return other.name == b.name && other.slot == b.slot; });
   bound.push_back(std::move(b));
 }
@@ -117,14 +131,16 @@ void WeirGraph::put(const Bound& b) {
 }
 
 void WeirGraph::hostBarrier(VkCommandBuffer commands, uint32_t slot, bool before) const {
-  const VkPipelineStageFlags2 stages = runtime->stages();
+  // A graph in which nothing runs still takes images from one layout to another.
+  const bool idle = runtime->stages() == 0;
+  const VkPipelineStageFlags2 stages = idle ? VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT : runtime->stages();
   std::vector<VkImageMemoryBarrier2> images;
   std::vector<VkBufferMemoryBarrier2> buffers;
   for (const Bound& b : bound) {
     if (b.slot != slot) continue;
     WeirAccess own{stages, VK_ACCESS_2_SHADER_STORAGE_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
     if (b.written) own.access |= VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-    if (stages == 0) own.access = 0;
+    if (idle) own.access = 0;
     if (!b.isImage) {
       VkBufferMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2};
       fill(barrier, before ? b.buffer.before : b.buffer.after, own, before);
@@ -133,6 +149,8 @@ void WeirGraph::hostBarrier(VkCommandBuffer commands, uint32_t slot, bool before
       buffers.push_back(barrier);
       continue;
     }
+    // One image that is read in two places is one image.
+    if (std::ranges::any_of(images, [&](const VkImageMemoryBarrier2& i) { return i.image == b.image.image; })) continue;
     VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
     fill(barrier, before ? b.image.before : b.image.after, own, before);
     barrier.oldLayout = before ? b.image.before.layout : own.layout;

@@ -221,8 +221,8 @@ WeirStatus weirRecord(WeirGraph* graph, VkCommandBuffer commands, const WeirFram
 
 /* Lines: names of the passes that run, in order. `queries`, when not NULL: how many a frame's timestamps take. */
 WeirStatus weirDescribePasses(WeirGraph* graph, uint32_t* queries);
-/* Milliseconds of each pass of a frame, in that order, into `milliseconds`, which has room for `count`. Does not wait:
-   WEIR_NOT_READY until they are there. */
+/* Milliseconds of each pass of the last frame that was recorded with these queries, in that order, into `milliseconds`,
+   which has room for `count`. Does not wait: WEIR_NOT_READY until they are there. */
 WeirStatus weirReadTimes(WeirGraph* graph, VkQueryPool queries, uint32_t firstQuery, double* milliseconds,
                          uint32_t count);
 

@@ -52,6 +52,21 @@ void checkTimestamps(const gpu::Device& device) {
 
 }  // namespace
 
+/// From here on these queries are this frame's: before it has run there is nothing in them, and not an older one's
+/// times.
+void WeirGraph::timeWith(VkQueryPool queries, uint32_t first) {
+  const auto passes = static_cast<uint32_t>(runtime->graph().passes.size());
+  vkResetQueryPool(scene.context.device.handle(), queries, first, passes + 2);
+  std::erase_if(timed, [&](const Timed& t) { return t.queries == queries && t.first == first; });
+  timed.push_back({queries, first, passes});
+}
+
+uint32_t WeirGraph::passesTimedWith(VkQueryPool queries, uint32_t first) const {
+  for (const Timed& t : timed)
+    if (t.queries == queries && t.first == first) return t.passes;
+  throw InputError("no frame of this graph was recorded with these queries");
+}
+
 WeirStatus weirRecord(WeirGraph* graph, VkCommandBuffer commands, const WeirFrame* frame) {
   return call(weirOf(graph), [&] {
     const WeirFrame& f = sized(frame, "WeirFrame");
@@ -60,6 +75,7 @@ WeirStatus weirRecord(WeirGraph* graph, VkCommandBuffer commands, const WeirFram
     if (f.queries != VK_NULL_HANDLE) checkTimestamps(graph->scene.context.device);
     stamps.queries = f.queries;
     stamps.firstQuery = f.firstQuery;
+    if (f.queries != VK_NULL_HANDLE) graph->timeWith(f.queries, f.firstQuery);
     graph->record(commands, input(*graph, f), f.slot, stamps);
   });
 }
@@ -77,12 +93,12 @@ WeirStatus weirReadTimes(WeirGraph* graph, VkQueryPool queries, uint32_t firstQu
                          uint32_t count) {
   return call(weirOf(graph), [&] {
     const gpu::Device& device = graph->scene.context.device;
-    const size_t passes = graph->runtime->graph().passes.size();
     (void)given(milliseconds, "milliseconds");
     if (queries == VK_NULL_HANDLE) throw InputError("the query pool is VK_NULL_HANDLE");
     checkTimestamps(device);
+    const size_t passes = graph->passesTimedWith(queries, firstQuery);
     if (count != passes)
-      throw InputError(fmt::format("room for the times of {} passes; the graph runs {}", count, passes));
+      throw InputError(fmt::format("room for the times of {} passes; the frame had {}", count, passes));
     std::vector<uint64_t> ticks(passes + 2);
     const VkResult result =
         vkGetQueryPoolResults(device.handle(), queries, firstQuery, static_cast<uint32_t>(ticks.size()),

@@ -65,6 +65,7 @@ void WeirGraph::change(GraphSource next) {
   const bool resized = compiled.width != runtime->graph().width || compiled.height != runtime->graph().height;
   auto made = std::make_unique<execute::GraphRuntime>(scene.context.services(), frame, std::move(compiled), options,
                                                       runtime.get());
+  retired.reserve(retired.size() + 1);  // nothing may fail from here on: frames in flight use the old one
   std::swap(runtime, made);
   if (recorded != 0) retired.push_back({std::move(made), recorded});
   recorded = 0;

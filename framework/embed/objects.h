@@ -92,6 +92,12 @@ struct Retired {
   uint32_t slots = 0;  ///< a mask: those whose frame is not known to be done
 };
 
+/// Queries of the host's that a frame was recorded with, and how many passes it had.
+struct Timed {
+  VkQueryPool queries = VK_NULL_HANDLE;
+  uint32_t first = 0, passes = 0;
+};
+
 }  // namespace weir::embed
 
 struct WeirGraph {
@@ -110,12 +116,16 @@ struct WeirGraph {
               const weir::execute::Stamps& stamps);
 
   WeirScene& scene;
+  void timeWith(VkQueryPool queries, uint32_t first);
+  uint32_t passesTimedWith(VkQueryPool queries, uint32_t first) const;
+
   weir::embed::GraphSource source;
   weir::execute::ExecutorOptions options;
   weir::execute::SceneFrame frame;
   std::unique_ptr<weir::execute::GraphRuntime> runtime;
   std::vector<weir::embed::Retired> retired;
   std::vector<weir::embed::Bound> bound;
+  std::vector<weir::embed::Timed> timed;
   uint32_t recorded = 0;  ///< a mask: slots that the runtime has recorded frames for
   bool replaced = false;  ///< the next frame is the runtime's first behind another's
 

@@ -61,27 +61,37 @@ void Executor::makeSlots() {
     const VkFenceCreateInfo fence{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     gpu::check(vkCreateFence(device_.handle(), &fence, nullptr, &s.fence), "vkCreateFence");
   }
-  makeTimers();
+  makeTimers(graph().passes.size());
 }
 
-/// Everything that a frame writes times into, as many as the graph has passes: nothing is allocated later.
-void Executor::makeTimers() {
-  const size_t passes = graph().passes.size();
+/// Everything that a frame writes times into, as many as the graph has passes: nothing is allocated later. No frame may
+/// be in flight. When it throws, what was there stays.
+void Executor::makeTimers(size_t passes) {
   const bool timed = device_.capabilities().timestampPeriod > 0;
   FrameTimes empty;
   empty.cpu.resize(passes);
   if (timed) empty.gpu.resize(passes);
-  ticks_.resize(passes + 2);
-  times_.assign(kTimesKept, empty);
+  std::vector<uint64_t> ticks(passes + 2);
+  std::vector<FrameTimes> times(kTimesKept, empty);
+  std::array<VkQueryPool, kSlots> pools{};
+  try {
+    for (VkQueryPool& pool : pools) {
+      if (!timed) continue;
+      VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+      queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
+      queries.queryCount = static_cast<uint32_t>(passes + 2);
+      gpu::check(vkCreateQueryPool(device_.handle(), &queries, nullptr, &pool), "vkCreateQueryPool");
+    }
+  } catch (...) {
+    for (VkQueryPool pool : pools) vkDestroyQueryPool(device_.handle(), pool, nullptr);
+    throw;
+  }
+  ticks_ = std::move(ticks);
+  times_ = std::move(times);
   firstTime_ = timesHeld_ = 0;
-  for (Slot& s : slots_) {
-    s.times = empty;
-    vkDestroyQueryPool(device_.handle(), std::exchange(s.queries, VK_NULL_HANDLE), nullptr);
-    if (!timed) continue;
-    VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-    queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    queries.queryCount = static_cast<uint32_t>(passes + 2);
-    gpu::check(vkCreateQueryPool(device_.handle(), &queries, nullptr, &s.queries), "vkCreateQueryPool");
+  for (uint32_t s = 0; s < kSlots; ++s) {
+    slots_[s].times = empty;
+    vkDestroyQueryPool(device_.handle(), std::exchange(slots_[s].queries, pools[s]), nullptr);
   }
 }
 
@@ -94,23 +104,23 @@ void Executor::swap(graph::CompiledGraph graph) {
 }
 
 void Executor::restart(graph::CompiledGraph graph) {
+  notFromSink("restart");
   const bool resized = graph.width != source_.width || graph.height != source_.height;
   std::set<std::string> before = std::exchange(shaderFiles_, {});
-  std::unique_ptr<GraphRuntime> next;
   try {
-    next = std::make_unique<GraphRuntime>(services_, scene_, graph, options_, runtime_.get());
+    auto next = std::make_unique<GraphRuntime>(services_, scene_, graph, options_, runtime_.get());
+    finish();  // frames in flight use what is about to go
+    captureTo({}, {});
+    const auto name = [](const graph::CompiledPass& pass) { return pass.name; };
+    const bool samePasses = std::ranges::equal(next->graph().passes, runtime_->graph().passes, {}, name, name);
+    if (!samePasses) makeTimers(next->graph().passes.size());  // times are by pass
+    runtime_ = std::move(next);
   } catch (...) {
     shaderFiles_.merge(before);  // the graph that goes on has its own
     throw;
   }
-  finish();  // frames in flight use what is about to go
-  captureTo({}, {});
-  const auto name = [](const graph::CompiledPass& pass) { return pass.name; };
-  const bool samePasses = std::ranges::equal(next->graph().passes, runtime_->graph().passes, {}, name, name);
-  runtime_ = std::move(next);
   source_ = std::move(graph);
   if (resized) resetHistory();
-  if (!samePasses) makeTimers();  // times are by pass
 }
 
 void Executor::collect(Slot& slot) {
@@ -119,7 +129,6 @@ void Executor::collect(Slot& slot) {
              "vkWaitForFences");
   gpu::check(vkResetFences(device_.handle(), 1, &slot.fence), "vkResetFences");
   slot.busy = false;
-  deliver(slot);
   if (slot.queries != VK_NULL_HANDLE) {
     // The fence says that they are there: nothing waits here.
     gpu::check(
@@ -137,11 +146,13 @@ void Executor::collect(Slot& slot) {
     ++timesHeld_;
   else
     firstTime_ = (firstTime_ + 1) % kTimesKept;
-  if (!options_.countRays) return;
-  scene_.rayCounter().invalidate();
-  uint32_t count = 0;
-  std::memcpy(&count, scene_.rayCounter().mapped(), sizeof count);
-  rays_ = count;
+  if (options_.countRays) {
+    scene_.rayCounter().invalidate();
+    uint32_t count = 0;
+    std::memcpy(&count, scene_.rayCounter().mapped(), sizeof count);
+    rays_ = count;
+  }
+  deliver(slot);  // last, as it may throw
 }
 
 void Executor::record(Slot& slot, uint32_t slotIndex, const FrameInput& input, bool capture) {
@@ -156,10 +167,10 @@ void Executor::record(Slot& slot, uint32_t slotIndex, const FrameInput& input, b
   if (options_.countRays)  // the host reads the count
     gpu::memoryBarrier(slot.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                        VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
-  gpu::check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer");
 }
 
 void Executor::frame(const FrameInput& input, bool capture) {
+  notFromSink("frame");
   const auto slotIndex = static_cast<uint32_t>(scene_.frames() % kSlots);
   Slot& slot = slots_[slotIndex];
   collect(slot);  // waits for the frame before last: no work of this one's
@@ -175,7 +186,13 @@ void Executor::frame(const FrameInput& input, bool capture) {
   VkSubmitInfo2 submit{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
   submit.commandBufferInfoCount = 1;
   submit.pCommandBufferInfos = &commands;
-  gpu::check(vkQueueSubmit2(device_.queue(), 1, &submit, slot.fence), "vkQueueSubmit2");
+  try {
+    gpu::check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer");
+    gpu::check(vkQueueSubmit2(device_.queue(), 1, &submit, slot.fence), "vkQueueSubmit2");
+  } catch (...) {
+    scene_.forget();  // what this frame was to leave behind is not there
+    throw;
+  }
   slot.busy = true;
   slot.times.cpuFrame = milliseconds(start);
 }

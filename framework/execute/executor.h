@@ -59,6 +59,7 @@ class Executor {
   /// What becomes of captured pictures: called once for each output of each captured frame, in order, from within a
   /// later frame() or finish(), when the frame is over. So nobody waits for a picture. Names as for read(). A swap that
   /// changes anything but parameters ends it.
+  /// The sink must not call frame(), captureTo(), swap() or the like: InputError.
   using Sink = std::function<void(const std::string& output, const image::Picture&)>;
   void captureTo(const std::vector<std::string>& outputs, Sink sink);
   /// A graph output of the last frame, after finish(); images only: buffers and unknown names throw InputError.
@@ -103,12 +104,13 @@ class Executor {
 
   void makeSlots();
   void freeSlots();
-  void makeTimers();
+  void makeTimers(size_t passes);
   void collect(Slot& slot);
   void record(Slot& slot, uint32_t slotIndex, const FrameInput& input, bool capture);
   const graph::GraphOutput& outputImage(const std::string& output) const;
   void recordCaptures(const Slot& slot, uint32_t parity) const;
   void deliver(Slot& slot);
+  void notFromSink(const char* what) const;
   uint32_t resourceNamed(const std::string& name) const;
   std::vector<std::byte> download(const Storage& storage);
 
@@ -123,6 +125,7 @@ class Executor {
   std::array<Slot, kSlots> slots_;
   std::vector<Captured> captured_;
   Sink sink_;
+  bool delivering_ = false;
   std::vector<uint64_t> ticks_;
   std::vector<FrameTimes> times_;  ///< a ring, allocated once
   size_t firstTime_ = 0, timesHeld_ = 0;

@@ -124,7 +124,8 @@ void PassRuntime::writeSet(const PreparedKernel& kernel, VkDescriptorSet set, co
         external ? resources.external(s.resource, slot) : resources.at(s.resource, parity, s.previous);
     if (!storage) continue;  // the host has not brought it yet
     if (storage.buffer) {
-      buffers[i] = {storage.buffer.handle(), 0, VK_WHOLE_SIZE};
+      // A host's buffer may be larger than shaders may see.
+      buffers[i] = {storage.buffer.handle(), 0, external ? shared_.graph->resources[s.resource].bytes : VK_WHOLE_SIZE};
       add(s.binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER).pBufferInfo = &buffers[i];
     } else {
       images[i] = {VK_NULL_HANDLE, storage.image.view(), VK_IMAGE_LAYOUT_GENERAL};

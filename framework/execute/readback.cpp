@@ -7,6 +7,7 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include <array>
 #include <cstring>
 #include <span>
 #include <utility>
@@ -104,6 +105,7 @@ std::vector<std::byte> Executor::readResource(const std::string& name) {
   const uint32_t index = resourceNamed(name);
   const graph::Resource& r = graph().resources[index];
   if (r.external) throw InputError(fmt::format("'{}' is the host's: ask the host for it", name));
+  if (r.depth) throw InputError(fmt::format("'{}' is a depth buffer, which is not read back", name));
   if (r.transient() && r.shares && !r.graphOutput && !r.kept)
     throw InputError(fmt::format("'{}' is not kept to the frame's end: other resources use its memory", name));
   if (r.transient() && r.shares && !runtime_->recorded())
@@ -186,20 +188,27 @@ image::Picture Executor::read(const std::string& output) {
   return picture;
 }
 
+void Executor::notFromSink(const char* what) const {
+  if (delivering_) throw InputError(fmt::format("{} can't be called by what receives captured pictures", what));
+}
+
 void Executor::captureTo(const std::vector<std::string>& outputs, Sink sink) {
+  notFromSink("captureTo");
+  if (!outputs.empty() && !sink) throw InputError("captured pictures need somebody to receive them");
   finish();
-  captured_.clear();
+  // All of it first, so that a failure leaves everything as it was.
+  std::vector<Captured> captured;
+  std::array<std::vector<gpu::Buffer>, kSlots> buffers;
   for (const std::string& output : outputs) {
     const graph::GraphOutput& found = outputImage(output);
-    captured_.push_back({output, found.resource, found.previous, {}});
+    captured.push_back({output, found.resource, found.previous, {}});
+    for (std::vector<gpu::Buffer>& slot : buffers)
+      slot.emplace_back(device_, graph().resources[found.resource].bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                        gpu::Residency::Readback, "captured " + output);
   }
+  captured_ = std::move(captured);
   sink_ = std::move(sink);
-  for (Slot& slot : slots_) {
-    slot.captures.clear();
-    for (const Captured& c : captured_)
-      slot.captures.emplace_back(device_, graph().resources[c.resource].bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                 gpu::Residency::Readback, "captured " + c.output);
-  }
+  for (uint32_t s = 0; s < kSlots; ++s) slots_[s].captures = std::move(buffers[s]);
 }
 
 void Executor::recordCaptures(const Slot& slot, uint32_t parity) const {
@@ -218,6 +227,12 @@ void Executor::recordCaptures(const Slot& slot, uint32_t parity) const {
 /// Hands over what a frame that is over has captured.
 void Executor::deliver(Slot& slot) {
   if (!std::exchange(slot.captured, false)) return;
+  struct Delivering {
+    bool& flag;
+    explicit Delivering(bool& f) : flag(f) { flag = true; }
+    ~Delivering() { flag = false; }
+  };
+  const Delivering delivering(delivering_);
   for (size_t i = 0; i < captured_.size(); ++i) {
     const graph::Resource& resource = graph().resources[captured_[i].resource];
     slot.captures[i].invalidate();

@@ -154,7 +154,10 @@ void Device::createAllocator() {
 
 void Device::destroy() noexcept {
   if (device_) {
-    vkDeviceWaitIdle(device_);
+    if (owned_)
+      vkDeviceWaitIdle(device_);
+    else
+      vkQueueWaitIdle(queue_);  // the host's other queues are no concern of this one
     try {
       savePipelineCache(device_, physical_, pipelineCache_, cacheFolder_);
     } catch (...) {

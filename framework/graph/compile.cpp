@@ -48,8 +48,8 @@ void checkPorts(const Checked& checked, const char* what, const std::vector<std:
   }
 }
 
-/// Marks what the host provides: readers of those ports have no producer to wait for.
-void markProvided(Checked& checked, const CompileOptions& options) {
+/// What the host provides, as ports.
+void findProvided(Checked& checked, const CompileOptions& options) {
   checkPorts(checked, "provided", options.provided, true);
   checkPorts(checked, "external", options.external, false);
   checkPorts(checked, "keep", options.keep, false);
@@ -58,16 +58,16 @@ void markProvided(Checked& checked, const CompileOptions& options) {
       throw InputError(fmt::format("'{}' can't be both provided by the host and written for it", name));
     checked.provided.push_back(portNamed(checked, name));
   }
-  const auto mark = [&](const Source& written, Source& resolved, const std::string& reader) {
+}
+
+/// Marks what leads there: readers of those ports have no producer to wait for.
+void markProvided(Checked& checked) {
+  const auto mark = [&](Source& resolved, const std::string& reader) {
     for (uint32_t i = 0; i < checked.provided.size(); ++i) {
       const Source& p = checked.provided[i];
-      // As the file says it, too: a disabled pass's port that the host provides is the host's.
-      for (const Source& source : {written, resolved})
-        if (source.node == p.node && source.output == p.output && source.previous == p.previous) {
-          resolved = source;
-          resolved.provided = i;
-          return;
-        }
+      if (resolved.node != p.node || resolved.output != p.output || resolved.previous != p.previous) continue;
+      resolved.provided = i;
+      return;
     }
     for (const Source& p : checked.provided)
       if (resolved.previous && !p.previous && p.node == resolved.node && p.output == resolved.output)
@@ -77,8 +77,8 @@ void markProvided(Checked& checked, const CompileOptions& options) {
   };
   for (Node& node : checked.nodes)
     for (Link& link : node.links)
-      if (node.enabled()) mark(link.written, link.resolved, node.name());
-  for (OutputLink& output : checked.outputs) mark(output.written, output.resolved, output.entry->name);
+      if (node.enabled()) mark(link.resolved, node.name());
+  for (OutputLink& output : checked.outputs) mark(output.resolved, output.entry->name);
 }
 
 }  // namespace
@@ -100,8 +100,9 @@ CompiledGraph compile(const Description& description, const PassCatalog& catalog
   if (description.broken) return graph;
   checkFrameSize(options.width, options.height, findings);
   Checked checked = bind(description, catalog, findings);
+  if (!findings.any()) findProvided(checked, options);
   resolve(checked, findings);
-  if (!findings.any()) markProvided(checked, options);
+  if (!findings.any()) markProvided(checked);
   matchPorts(checked, findings);
   findCycles(checked, findings);
   if (description.outputs.empty() && !findings.any())

@@ -29,9 +29,9 @@ std::string dot(const CompiledGraph& graph) {
   const auto edge = [&](uint32_t resource, bool previous, const std::string& to) {
     const Resource& r = graph.resources[resource];
     const bool fromHost = r.producer == kNone;  // its own name says which "@previous" it stands for
-    const std::string from = fromHost ? "host" : graph.passes[r.producer].name;
+    const std::string from = fromHost ? "host:" : graph.passes[r.producer].name;
     const std::string port = fromHost ? r.name : r.name.substr(from.size() + 1);
-    say("  {} -> {} [label={}{}];\n", fromHost ? from : quoted(from), to, quoted(port + (previous ? "@previous" : "")),
+    say("  {} -> {} [label={}{}];\n", quoted(from), to, quoted(port + (previous ? "@previous" : "")),
         previous ? ", style=dashed, constraint=false" : "");
   };
   say("digraph {} {{\n  rankdir=LR;\n  node [shape=box, fontname=\"sans-serif\"];\n", quoted(graph.name));
@@ -45,7 +45,7 @@ std::string dot(const CompiledGraph& graph) {
     say("  {} [label={}, shape=ellipse];\n", quoted("output:" + output.name), quoted(output.name));
   if (std::any_of(graph.resources.begin(), graph.resources.end(),
                   [](const Resource& r) { return r.producer == kNone; }))
-    say("  host [label=host, shape=ellipse];\n");
+    say("  \"host:\" [label=host, shape=ellipse];\n");
   for (const CompiledPass& pass : graph.passes)
     for (const Binding& input : pass.inputs)
       if (input.resource != kNone) edge(input.resource, input.previous, quoted(pass.name));

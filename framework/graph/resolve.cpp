@@ -47,12 +47,18 @@ class Resolver {
   };
 
   bool enabled(const Source& source) const { return checked_.nodes[source.node].enabled(); }
+  /// Whether the host brings the very thing: then it does not matter what stands for it otherwise.
+  bool isProvided(const Source& source) const {
+    return std::any_of(checked_.provided.begin(), checked_.provided.end(), [&](const Source& p) {
+      return p.node == source.node && p.output == source.output && p.previous == source.previous;
+    });
+  }
   Way& wayOf(const Source& source) { return ways_[source.node][source.output]; }
 
   /// `line` and `path` are the reader's. A source without a node comes back when something was wrong, now or before.
   template <typename PathOf>
   Source follow(const Source& written, int line, const PathOf& path) {
-    if (written.node == kNone || enabled(written)) return written;
+    if (written.node == kNone || enabled(written) || isProvided(written)) return written;
     if (!written.known()) return {};
     const Way& way = walk(written);
     const Meeting& meeting = written.previous ? way.first : way.second;
@@ -76,7 +82,7 @@ class Resolver {
     std::vector<Step> path;
     Way way;
     for (Source at = from; way.kind == Way::Kind::Unknown;) {
-      if (enabled(at)) {
+      if (enabled(at) || isProvided({at.node, at.output, false})) {
         way = {Way::Kind::Ends, at, {}, {}};
       } else if (!at.known()) {
         way = {Way::Kind::Stops, at, {}, {}};

@@ -42,10 +42,10 @@ graph::CompiledGraph Session::compile(const graph::Overrides& overrides, const g
   return graph::compileFile(graphFile_, overrides, registry_.catalog(), options);
 }
 
-/// Of the passes that run, and of those that the file names: what is wrong with a plugin may be why it does not run
-/// yet.
-std::set<std::string> Session::plugins() const {
-  std::set<std::string> names;
+/// Of the passes that run or ran, and of those that the file names: what is wrong with a plugin may be why it does not
+/// run yet.
+const std::set<std::string>& Session::plugins() {
+  std::set<std::string>& names = plugins_;
   for (const graph::CompiledPass& pass : executor_->graph().passes) names.insert(pluginOf(pass.type));
   try {
     std::vector<graph::Diagnostic> ignored;
@@ -111,18 +111,21 @@ std::vector<Event> Session::poll() {
   }
   std::vector<std::string> graphFiles = takeOut([&](const std::string& file) { return file == graphFile_; });
   if (!graphFiles.empty()) events.push_back({Event::Kind::Graph, std::move(graphFiles), ""});
-  const bool shaders = !changed.empty();
-  if (shaders) events.push_back({Event::Kind::Shader, std::move(changed), ""});
+  if (!changed.empty()) {
+    shadersPending_ = true;
+    events.push_back({Event::Kind::Shader, std::move(changed), ""});
+  }
 
   // Whatever changed, what comes of it is the graph as its file now says it. What is wrong with that is told by each of
   // the changes that were fine until then.
   Event outcome;
   attempt(outcome, [&] {
     graph::CompiledGraph graph = compile(overrides_, options_);
-    if (shaders)
+    if (shadersPending_)
       executor_->restart(std::move(graph));
     else
       executor_->swap(std::move(graph));
+    shadersPending_ = false;
   });
   for (Event& event : events)
     if (event.error.empty()) event.error = outcome.error;

@@ -43,7 +43,7 @@ class Session {
  private:
   graph::CompiledGraph compile(const graph::Overrides& overrides, const graph::CompileOptions& options) const;
   void watch(WatchedFiles::Moment before);
-  std::set<std::string> plugins() const;
+  const std::set<std::string>& plugins();
   std::vector<std::string> filesOf(const std::string& plugin) const;
 
   Registry& registry_;
@@ -52,6 +52,8 @@ class Session {
   graph::CompileOptions options_;
   std::unique_ptr<execute::Executor> executor_;
   WatchedFiles files_;
+  std::set<std::string> plugins_;  ///< that were looked at so far
+  bool shadersPending_ = false;    ///< edited, and not in force yet
 };
 
 }  // namespace weir::live

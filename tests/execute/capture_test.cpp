@@ -101,8 +101,34 @@ TEST_F(Capture, ParametersDoNotEndItAndAnotherGraphDoes) {
   EXPECT_EQ(seen_.size(), 2u);
 }
 
-TEST_F(Capture, UnknownOutputsAreRefused) {
-  EXPECT_THROW(run_->executor().captureTo({"oo"}, {}), InputError);
+TEST_F(Capture, UnknownOutputsAreRefusedAndWhatWasThereGoesOn) {
+  EXPECT_THROW(run_->executor().captureTo({"o", "oo"}, [](const std::string&, const image::Picture&) {}), InputError);
+  EXPECT_THROW(run_->executor().captureTo({"o"}, {}), InputError);
+  frame(true);
+  run_->executor().finish();
+  EXPECT_EQ(seen_.size(), 1u);
+}
+
+TEST_F(Capture, WhatReceivesAPictureCannotTurnTheExecutorRound) {
+  int refused = 0;
+  execute::Executor& executor = run_->executor();
+  executor.captureTo({"o"}, [&](const std::string&, const image::Picture&) {
+    const std::vector<std::function<void()>> calls = {[&] { executor.captureTo({}, {}); }, [&] { frame(false); },
+                                                      [&] { executor.reloadShaders(); }};
+    for (const auto& call : calls) {
+      try {
+        call();
+      } catch (const InputError&) {
+        ++refused;
+      }
+    }
+  });
+  frame(true);
+  executor.finish();
+  EXPECT_EQ(refused, 3);
+  frame(true);
+  executor.finish();
+  EXPECT_EQ(refused, 6) << "and it goes on";
 }
 
 }  // namespace

@@ -51,7 +51,8 @@ TEST_F(Provided, APassWhosePortsAllComeFromTheHostDoesNotRun) {
   for (const CompiledPass& pass : r.graph.passes)
     for (const Dependency& d : pass.dependencies) EXPECT_FALSE(r.graph.resources[d.resource].producer == kNone);
   EXPECT_NE(explain(r.graph).find("the host's"), std::string::npos);
-  EXPECT_NE(dot(r.graph).find("host -> \"initial\" [label=\"gbuffer.surface\""), std::string::npos) << dot(r.graph);
+  EXPECT_NE(dot(r.graph).find("\"host:\" -> \"initial\" [label=\"gbuffer.surface\""), std::string::npos)
+      << dot(r.graph);
 }
 
 TEST_F(Provided, APassOfWhichSomeIsProvidedStillRunsForTheRest) {
@@ -85,6 +86,21 @@ TEST_F(Provided, ADisabledPassCanStandForTheHost) {
   ASSERT_EQ(r.text(), "");
   EXPECT_EQ(r.source("shade", "reservoirs"), "temporal.reservoirs") << "what it passes through";
   EXPECT_EQ(r.source("temporal", "history"), "spatial.reservoirs@previous") << "and not what it passes through";
+}
+
+TEST_F(Provided, ADisabledPassThatPassesNothingThroughCanToo) {
+  const Result r = compileWith(all(), {{}, {}, {"gbuffer"}});
+  ASSERT_EQ(r.text(), "");
+  EXPECT_EQ(r.source("shade", "emission"), "gbuffer.emission");
+}
+
+TEST_F(Provided, InTheMiddleOfAChainOfDisabledPasses) {
+  CompileOptions o;
+  o.provided = {"temporal.reservoirs"};
+  const Result r = compileWith(o, {{}, {}, {"spatial", "temporal"}});
+  ASSERT_EQ(r.text(), "");
+  EXPECT_EQ(r.source("shade", "reservoirs"), "temporal.reservoirs") << "and not what that one passes through";
+  EXPECT_EQ(r.graph.resources[r.pass("shade").inputs[2].resource].producer, kNone);
 }
 
 TEST_F(Provided, WrongNamesAreRefusedWithTheNearest) {

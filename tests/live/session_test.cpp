@@ -177,6 +177,17 @@ TEST_F(Live, ABrokenGraphIsToldWithItsLinesAndTheOldOneGoesOn) {
   EXPECT_EQ(frame(), 1005u);
 }
 
+TEST_F(Live, AShaderThatWasEditedWhileTheGraphWasBrokenIsNotForgotten) {
+  frame();
+  write("graph.json", "{ half a fi");
+  write("step.glsl", "uint stepOf(uint p) { return 30u; }\n");
+  for (const live::Event& event : session_->poll()) EXPECT_NE(event.error, "");
+  EXPECT_EQ(frame(), 1002u);
+  writeGraph(1);
+  EXPECT_EQ(only(live::Event::Kind::Graph).error, "");
+  EXPECT_EQ(frame(), 1032u);
+}
+
 TEST_F(Live, OverridesStayInForceOverEdits) {
   graph::Overrides overrides;
   overrides.set = {"c.step=9"};
