@@ -88,7 +88,7 @@ WeirStatus weirDestroyNeeds(WeirNeeds* needs);
 
 /* WEIR_BAD_INPUT when the device was made without Weir's minimum. */
 WeirStatus weirCreateContext(Weir* weir, const WeirHost* host, WeirContext** context);
-/* Waits until the device is idle. */
+/* Waits until the context's queue is idle. */
 WeirStatus weirDestroyContext(WeirContext* context);
 
 /* ------------------------------------------------------------------------------------------------------ scene */
