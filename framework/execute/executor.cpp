@@ -1,24 +1,15 @@
 #include <fmt/format.h>
 #include <weir/core/error.h>
+#include <weir/core/stopwatch.h>
 #include <weir/execute/executor.h>
 #include <weir/gpu/barrier.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <limits>
 #include <utility>
 
 namespace weir::execute {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-double milliseconds(Clock::time_point from) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - from).count();
-}
-
-}  // namespace
-
 Executor::Executor(const gpu::Device& device, shader::Compiler& compiler, Registry& registry,
                    const scene::SceneGpu& scene, graph::CompiledGraph graph, const ExecutorOptions& options)
     : device_(device),
@@ -194,7 +185,7 @@ void Executor::frame(const FrameInput& input, bool capture) {
     throw;
   }
   slot.busy = true;
-  slot.times.cpuFrame = milliseconds(start);
+  slot.times.cpuFrame = millisecondsSince(start);
 }
 
 void Executor::finish() {

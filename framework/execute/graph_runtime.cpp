@@ -1,20 +1,15 @@
 #include <fmt/format.h>
 #include <weir/core/error.h>
+#include <weir/core/stopwatch.h>
 #include <weir/core/text.h>
 #include <weir/execute/graph_runtime.h>
 #include <weir/gpu/barrier.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 namespace weir::execute {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double milliseconds(Clock::time_point from) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - from).count();
-}
 
 uint64_t largestAllocation(const gpu::Device& device) {
   VkPhysicalDeviceMaintenance3Properties limits{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
@@ -221,7 +216,7 @@ void GraphRuntime::record(VkCommandBuffer commands, const FrameInput& input, uin
     if (poison_) poisonAround(commands, p, false);
     device_.endLabel(commands);
     stamp(p + 2);
-    if (p < stamps.cpu.size()) stamps.cpu[p] = milliseconds(start);
+    if (p < stamps.cpu.size()) stamps.cpu[p] = millisecondsSince(start);
   }
   device_.endLabel(commands);
   // Only now: a frame whose recording threw never was.
