@@ -167,8 +167,8 @@ typedef struct WeirAccess {
 } WeirAccess;
 
 /* The graph's node begins with a barrier from `before` to its own use (layout GENERAL) and ends with one to `after`.
-   `before.layout` may be UNDEFINED where the graph writes all of it. One image may stand for two ports of a slot when both
-   are only read and it is handed over in the same way for both. */
+   `before.layout` may be UNDEFINED where the graph writes all of it. One image may stand for two ports of a slot when
+   both are only read and it is handed over in the same way for both. */
 typedef struct WeirImage {
   size_t size;
   const char* name;

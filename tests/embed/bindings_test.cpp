@@ -65,6 +65,36 @@ TEST_F(Bindings, BuffersThatDoNotFitAreRefused) {
   expect(surfaces.bind("gbuffer.surface", 0, image, kClear, kSample), "weirBindBuffer");
 }
 
+TEST_F(Bindings, OneImageThatIsOnlyReadMayStandForTwoPorts) {
+  Node two(host, {.json = R"({"version": 1, "name": "two", "passes": {
+                    "g": {"type": "gbuffer.RayTraced"}, "h": {"type": "gbuffer.RayTraced"},
+                    "a": {"type": "template.Scale", "inputs": {"color": "g.emission"}},
+                    "b": {"type": "template.Scale", "inputs": {"color": "h.emission"}}},
+                    "outputs": {"a": "a.color", "b": "b.color"}})",
+                  .provided = Texts{"g.emission", "h.emission"}});
+  EXPECT_EQ(two.bind("g.emission", 0, image, kClear, kSample), WEIR_OK) << host.message();
+  expect(two.bind("h.emission", 0, image, kClear, kClear), "the same image");
+  EXPECT_EQ(two.bind("h.emission", 0, image, kClear, kSample), WEIR_OK) << host.message();
+  host.run([&](VkCommandBuffer commands) {
+    barrier(commands, image, kNothing, kClear);
+    EXPECT_EQ(two.record(commands, 0, 0), WEIR_OK) << host.message();  // one way into the layout, and one out of it
+  });
+  ASSERT_EQ(bindWith([](WeirImage&) {}), WEIR_OK) << host.message();
+  expect(node.bind("mean.color", 0, image, kClear, kSample), "the same image");
+}
+
+TEST_F(Bindings, AGraphInWhichNothingRunsStillHandsOver) {
+  Node idle(host, {.json = R"({"version": 1, "name": "idle", "passes": {"g": {"type": "gbuffer.RayTraced"}},
+                     "outputs": {"o": "g.emission"}})",
+                   .provided = Texts{"g.emission"}});
+  EXPECT_EQ(idle.bind("g.emission", 0, image, kClear, kSample), WEIR_OK) << host.message();
+  host.run([&](VkCommandBuffer commands) {
+    barrier(commands, image, kNothing, kClear);
+    EXPECT_EQ(idle.record(commands, 0, 0), WEIR_OK) << host.message();
+    barrier(commands, image, kSample, kClear);
+  });
+}
+
 TEST_F(Bindings, RecordingNamesWhatIsNotBound) {
   ASSERT_EQ(bindWith([](WeirImage&) {}), WEIR_OK) << host.message();
   host.run([&](VkCommandBuffer commands) {
