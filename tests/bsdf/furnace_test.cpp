@@ -76,7 +76,7 @@ TEST(Furnace, RoughestMetalHasAClosedForm) {
   const std::vector<double> without = albedos(cases, false);
   for (size_t i = 0; i < cases.size(); ++i) {
     const double v = cosineOf(cases[i]);
-    EXPECT_NEAR(without[i], v > 0 ? 1 - v * std::log1p(1 / v) : 1, 2e-4) << cases[i].degrees << " degrees";
+    EXPECT_NEAR(without[i], v > 0 ? 1 - v * std::log1p(1 / v) : 1, 5e-4) << cases[i].degrees << " degrees";
   }
 }
 

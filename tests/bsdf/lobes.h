@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../../passes/common/layouts.h"
 #include "support/pass_test.h"
 
 namespace weir::test {
@@ -63,6 +64,7 @@ class Draw final : public Pass {
  public:
   static void describe(PassDescription& d) {
     d.input("lobes", perPixel<Lobe>());
+    d.input("surface", perPixel<passes::PackedSurface>()).optional();  // surface.glsl names the struct
     d.output("drawn", perPixel<Drawn>());
     d.needs(Need::FrameIndex);
   }
@@ -77,6 +79,7 @@ class Furnace final : public Pass {
  public:
   static void describe(PassDescription& d) {
     d.input("lobes", perPixel<Lobe>());
+    d.input("surface", perPixel<passes::PackedSurface>()).optional();  // surface.glsl names the struct
     d.output("albedo", perPixel<Albedo>());
   }
   void prepare(PrepareContext& c) override { kernel_ = c.kernel("albedo.glsl"); }
@@ -87,7 +90,7 @@ class Furnace final : public Pass {
 };
 
 inline PassTest& withLobes(PassTest& t) {
-  return t.plugin("bsdf_test", {passEntry<Draw>("Draw"), passEntry<Furnace>("Furnace")},
+  return t.leaveOpen("surface").plugin("bsdf_test", {passEntry<Draw>("Draw"), passEntry<Furnace>("Furnace")},
                   sourcePath("tests/bsdf/shaders"));
 }
 
