@@ -7,7 +7,7 @@ namespace weir::scene {
 namespace {
 
 // unorm16, written by tools/specular_albedo.py.
-constexpr std::array<uint16_t, std::size_t{kSpecularAlbedoColumns} * kSpecularAlbedoRows> kTable = {
+constexpr std::array<uint16_t, std::size_t{kSpecularAlbedoColumns}* kSpecularAlbedoRows> kTable = {
 #include "specular_albedo_table.inc"
 };
 

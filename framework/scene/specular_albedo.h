@@ -1,5 +1,5 @@
-// E(n·v, α): how much of the light that meets a GGX surface without absorption leaves it after a single reflection, that
-// is, the directional albedo of the specular lobe of glTF 2.0, appendix B, with F = 1. The rest would have been
+// E(n·v, α): how much of the light that meets a GGX surface without absorption leaves it after a single reflection,
+// that is, the directional albedo of the specular lobe of glTF 2.0, appendix B, with F = 1. The rest would have been
 // reflected again; energy compensation (Turquin 2019, "Practical multiple scattering compensation for microfacet
 // models") puts it back.
 #pragma once

@@ -22,14 +22,14 @@ enum SceneBinding : uint32_t {
   kBindMaterials,
   kBindLights,
   kBindAlias,
-  kBindColors,        ///< with the trait vertexColors
-  kBindUvs1,          ///< with uvSets
-  kBindSpeculars,     ///< with one of the specular traits
-  kBindTextureUses,   ///< with uvSets, uvTransforms or mipmaps
+  kBindColors,          ///< with the trait vertexColors
+  kBindUvs1,            ///< with uvSets
+  kBindSpeculars,       ///< with one of the specular traits
+  kBindTextureUses,     ///< with uvSets, uvTransforms or mipmaps
   kBindSpecularAlbedo,  ///< with energyCompensation
-  kBindRays,          ///< ray counter
-  kBindAcceleration,  ///< only on devices with acceleration structures
-  kBindEnvironment,   ///< its table; only in scenes that have one, as the next
+  kBindRays,            ///< ray counter
+  kBindAcceleration,    ///< only on devices with acceleration structures
+  kBindEnvironment,     ///< its table; only in scenes that have one, as the next
   kBindEnvironmentMap,
   // As in the last frame; only where a clip moves the scene.
   kBindPreviousPositions,

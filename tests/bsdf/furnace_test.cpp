@@ -25,8 +25,7 @@ double cosineOf(const Case& c) {
 /// What the device's shaders reflect, by a deterministic quadrature on it.
 std::vector<double> albedos(const std::vector<Case>& cases, bool compensated) {
   std::vector<Lobe> lobes;
-  for (const Case& c : cases)
-    lobes.insert(lobes.end(), kGrid, lobe(cosineOf(c), c.roughness, c.f0, c.diffuse));
+  for (const Case& c : cases) lobes.insert(lobes.end(), kGrid, lobe(cosineOf(c), c.roughness, c.f0, c.diffuse));
   scene::Scene scene;
   scene.materials.emplace_back();
   scene.energyCompensation = compensated;
@@ -103,9 +102,8 @@ TEST(Furnace, TableAgainstQuadrature) {
 
 std::vector<Case> dielectricsAndMetals(const std::vector<double>& roughnesses) {
   std::vector<Case> cases;
-  const std::vector<std::pair<double, double>> kinds = {{0, 1},       {0.02, 1}, {0.04, 1}, {0.0816326530612245, 1},
-                                                        {1.0 / 9, 1}, {0.2, 0},  {0.5, 0},  {0.9, 0},
-                                                        {1, 0}};
+  const std::vector<std::pair<double, double>> kinds = {
+      {0, 1}, {0.02, 1}, {0.04, 1}, {0.0816326530612245, 1}, {1.0 / 9, 1}, {0.2, 0}, {0.5, 0}, {0.9, 0}, {1, 0}};
   for (const auto& [f0, diffuse] : kinds)
     for (const double r : roughnesses)
       for (const double degrees : {0., 30., 60., 75., 85., 89.}) cases.push_back({degrees, r, f0, diffuse});
@@ -118,9 +116,10 @@ TEST(Furnace, WithoutCompensationAppendixB) {
   const std::vector<double> found = albedos(cases, false);
   for (size_t i = 0; i < cases.size(); ++i) {
     const Case& c = cases[i];
-    EXPECT_NEAR(found[i], albedoByQuadrature(cosineOf(c), std::max(c.roughness * c.roughness, 1.0 / 2048), c.f0, c.diffuse),
-                1e-3)
-        << "F0 " << c.f0 << ", diffuse " << c.diffuse << ", roughness " << c.roughness << ", " << c.degrees << " degrees";
+    EXPECT_NEAR(found[i],
+                albedoByQuadrature(cosineOf(c), std::max(c.roughness * c.roughness, 1.0 / 2048), c.f0, c.diffuse), 1e-3)
+        << "F0 " << c.f0 << ", diffuse " << c.diffuse << ", roughness " << c.roughness << ", " << c.degrees
+        << " degrees";
   }
 }
 
@@ -130,7 +129,8 @@ TEST(Furnace, CompensationGivesBackNoMoreThanWasLost) {
   const std::vector<double> without = albedos(cases, false), with = albedos(cases, true);
   for (size_t i = 0; i < cases.size(); ++i) {
     const Case& c = cases[i];
-    SCOPED_TRACE(testing::Message() << "F0 " << c.f0 << ", roughness " << c.roughness << ", " << c.degrees << " degrees");
+    SCOPED_TRACE(testing::Message() << "F0 " << c.f0 << ", roughness " << c.roughness << ", " << c.degrees
+                                    << " degrees");
     const double alpha = c.roughness * c.roughness, nv = cosineOf(c);
     const double all = albedoByQuadrature(nv, alpha, 1, 0), lobe = albedoByQuadrature(nv, alpha, c.f0, 0);
     EXPECT_NEAR(with[i] - without[i], lobe * c.f0 * (1 - all) / all, 2e-3);
@@ -146,22 +146,17 @@ TEST(Furnace, Figures) {
   if (file == nullptr) GTEST_SKIP() << "WEIR_FURNACE_JSON says where to";
   const std::vector<Case> cases = dielectricsAndMetals({0.03, 0.1, 0.25, 0.5, 0.75, 1});
   const std::vector<double> without = albedos(cases, false), with = albedos(cases, true);
-  nlohmann::json figures = nlohmann::json::array();
+  std::ofstream out(file);
+  out << "{\"what\": \"albedo over the view's angle from the normal, appendix B and with energy compensation\",\n"
+      << " \"by\": \"WEIR_FURNACE_JSON=FILE test_bsdf --gtest_filter=Furnace.Figures\", \"directions\": "
+      << kGrid * kGrid << ",\n \"figures\": [\n";
   for (size_t i = 0; i < cases.size(); ++i) {
     const Case& c = cases[i];
-    figures.push_back({{"f0", c.f0},
-                       {"diffuse", c.diffuse},
-                       {"roughness", c.roughness},
-                       {"degrees", c.degrees},
-                       {"albedo", without[i]},
-                       {"compensated", with[i]}});
+    const nlohmann::json figure = {{"f0", c.f0},           {"diffuse", c.diffuse}, {"roughness", c.roughness},
+                                   {"degrees", c.degrees}, {"albedo", without[i]}, {"compensated", with[i]}};
+    out << figure.dump() << (i + 1 < cases.size() ? ",\n" : "\n]}\n");
   }
-  std::ofstream(file) << nlohmann::json{{"what", "directional albedo; degrees: of the view from the normal"},
-                                        {"by", "WEIR_FURNACE_JSON=FILE test_bsdf --gtest_filter=Furnace.Figures"},
-                                        {"directions", kGrid * kGrid},
-                                        {"figures", figures}}
-                             .dump(1)
-                      << "\n";
+  EXPECT_TRUE(out.good()) << file;
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ class Furnace final : public Pass {
 
 inline PassTest& withLobes(PassTest& t) {
   return t.leaveOpen("surface").plugin("bsdf_test", {passEntry<Draw>("Draw"), passEntry<Furnace>("Furnace")},
-                  sourcePath("tests/bsdf/shaders"));
+                                       sourcePath("tests/bsdf/shaders"));
 }
 
 /// A surface that is seen at the cosine `nv`, tilted in the world.

@@ -31,8 +31,9 @@ scene::Scene balls() {
   return b.scene;
 }
 
-// Direct light is all there is, as each ball is convex and far from the next. The mean over frames, of each tile and of the whole ball: frames are independent, so that Student's t with frames - 1 degrees of freedom
-// holds; chance of a false alarm 1e-4 over all tiles. To its interval comes the table's error of at most 0.001.
+// Direct light is all there is, as each ball is convex and far from the next. The mean over frames, of each tile and of
+// the whole ball: frames are independent, so that Student's t with frames - 1 degrees of freedom holds; chance of a
+// false alarm 1e-4 over all tiles. To its interval comes the table's error of at most 0.001.
 TEST(FurnacePicture, WhiteMetalUnderAWhiteSky) {
   const scene::Scene scene = balls();
   constexpr int kTiles = 3 * ((kSide / kTile) * (kSide / kTile) + 1);

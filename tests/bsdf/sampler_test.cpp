@@ -62,8 +62,8 @@ int cellOf(const Frame& f, const glm::dvec3& l) {
   return i * kAngles + std::min(static_cast<int>(angle * kAngles), kAngles - 1);
 }
 
-/// Chance that Pearson's χ² is at least this large when nothing is wrong, by Wilson and Hilferty's approximation (1931),
-/// which is good to a few per cent of it for the hundred cells here. Cells of fewer than 8 expected are pooled.
+/// Chance that Pearson's χ² is at least this large when nothing is wrong, by Wilson and Hilferty's approximation
+/// (1931), which is good to a few per cent of it for the hundred cells here. Cells of fewer than 8 expected are pooled.
 double chiSquareChance(const std::vector<uint64_t>& counts, const std::vector<double>& expected) {
   uint64_t all = 0, pooledCount = 0;
   for (const uint64_t c : counts) all += c;

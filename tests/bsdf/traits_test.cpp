@@ -1,8 +1,8 @@
 // Which scenes compile shaders with energy compensation.
 #include <gtest/gtest.h>
 
-#include "support/small_scenes.h"
 #include <weir/scene/prepared.h>
+#include "support/small_scenes.h"
 
 namespace weir::test {
 namespace {
