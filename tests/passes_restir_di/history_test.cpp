@@ -62,7 +62,7 @@ TEST(RestirHistory, PoisonDoesNotSpread) {
                               {3, 0, -1, 5},           {2, 0xdeadbeef, 3e38f, 5},
                               {0xdeadbeef, 0, nan, 2}, {0, 0, infinity, infinity},
                               {4, 1, 1, 3e38f}};
-  for (const char* mis : {"biased", "pairwise"}) {
+  for (const char* mis : {"biased", "z", "balance", "pairwise"}) {
     PassTest t("restir_di.Temporal");
     show(t, view, smallScene({}));
     t.param("mis", mis)
