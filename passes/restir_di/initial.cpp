@@ -14,7 +14,8 @@ void Initial::describe(PassDescription& d) {
   d.param("bsdfRays", 0)
       .range(0, 64)
       .doc(
-          "Rays by the BSDF that each pixel shoots: lights that they meet are candidates, too. Hidden lights are found by "
+          "Rays by the BSDF that each pixel shoots: lights that they meet are candidates, too. Hidden lights are found "
+          "by "
           "the others alone, so that unbiased reuse needs its visibilityRays then");
   d.param("samples", 1).range(1, 4).doc("Reservoirs a pixel; they share the candidates");
   d.param("uniformShare", 0.1f)
@@ -29,7 +30,7 @@ void Initial::describe(PassDescription& d) {
           "How a point on an emissive triangle is drawn: by area, or by solid angle where it is close for its size (no "
           "fireflies close to it)");
   d.param("lobeShare", 0.25f)
-      .range(0, 0.9f)
+      .range(0, 0.9)
       .doc(
           "On surfaces with α below 0.25: share of the points on emissive triangles that are looked for along the "
           "specular lobe (no fireflies in reflections)");

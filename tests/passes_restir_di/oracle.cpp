@@ -214,10 +214,14 @@ passes::Reservoir World::sample(const Surface& surface, Random& random, int cand
 
 const char* nameOf(Mis mis) {
   switch (mis) {
-    case Mis::Biased: return "biased";
-    case Mis::Z: return "z";
-    case Mis::Balance: return "balance";
-    case Mis::Pairwise: return "pairwise";
+    case Mis::Biased:
+      return "biased";
+    case Mis::Z:
+      return "z";
+    case Mis::Balance:
+      return "balance";
+    case Mis::Pairwise:
+      return "pairwise";
   }
   return "";
 }
@@ -233,10 +237,14 @@ double misWeight(const std::vector<MergeInput>& inputs, size_t i, Mis mis) {
   }
   const double own = confidence(0), others = total - own;
   switch (mis) {
-    case Mis::Biased: return confidence(i) / total;
-    case Mis::Z: return p[i] > 0.0 ? confidence(i) / containing : 0.0;
-    case Mis::Balance: return confidence(i) * p[i] / balance;
-    case Mis::Pairwise: break;
+    case Mis::Biased:
+      return confidence(i) / total;
+    case Mis::Z:
+      return p[i] > 0.0 ? confidence(i) / containing : 0.0;
+    case Mis::Balance:
+      return confidence(i) * p[i] / balance;
+    case Mis::Pairwise:
+      break;
   }
   if (i > 0) return confidence(i) / total * others * p[i] / (own * p[0] + others * p[i]);
   double m = own / total;

@@ -134,8 +134,8 @@ TEST(RestirTemporal, DepthFollowsTheCamera) {
 }
 
 // Two reservoirs by hand, with every combination of null samples and zero targets, seen by a camera that moved, on a
-// glossy surface that was bent: W to 3e-4 of what theory gives in every mode, and how often each survives. Chance of a false
-// alarm: 1e-4.
+// glossy surface that was bent: W to 3e-4 of what theory gives in every mode, and how often each survives. Chance of a
+// false alarm: 1e-4.
 TEST(RestirTemporal, MergesTwoReservoirs) {
   scene::Camera camera = frontCamera(5e-4), previousCamera = camera;
   previousCamera.eye = {2.0f, 0.0f, 4.5f};
