@@ -96,6 +96,7 @@ void prepareMaterials(const Scene& scene, PreparedScene& prepared) {
   for (const Material& m : scene.materials) {
     traits.specularGlossiness |= m.model == MaterialModel::SpecularGlossiness;
     traits.dielectricSpecular |= hasOwnSpecular(m);
+    traits.blend |= m.alphaMode == AlphaMode::Blend;
     traits.unlit |= m.model == MaterialModel::Unlit;
     traits.f90 |= m.model == MaterialModel::Unlit || (hasOwnSpecular(m) && (m.specular != 1.0f || m.specularTexture));
     prepared.materials.push_back(packMaterial(scene, m, prepared));
