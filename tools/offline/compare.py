@@ -28,9 +28,9 @@ def run(command):
     return done.stdout
 
 
-def cycles(blender, scene, out, **options):
+def cycles(blender, scene, out, *flags, **options):
     command = [blender, "-b", "-noaudio", "--factory-startup", "--python-exit-code", "1", "--python", os.path.join(HERE, "cycles.py"), "--",
-               scene, out]
+               scene, out, *flags]
     for name, value in options.items(): command += ["--" + name, str(value)]
     run(command)
     if not os.path.exists(out): sys.exit("Blender wrote no '%s'" % out)
