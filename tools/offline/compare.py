@@ -6,14 +6,16 @@
 Each side is rendered in parts with seeds of their own; parts that FOLDER already has with the same settings are kept, so that either side
 can be rendered on another machine (--only) or with more samples later. The spread between parts gives the statistical error. FOLDER gets
 the parts, both pictures and their difference as PNG, and figures.json, which is also printed. Exit status: 0 when the bounds are met,
-1 when they are not, 2 when something failed.
+1 when they are not ("verdict" says when that is noise), 2 when something failed.
 """
 import argparse
 import hashlib
 import json
 import os
+import struct
 import subprocess
 import sys
+import zlib
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
@@ -141,6 +143,6 @@ if __name__ == "__main__":
             print(stop.code, file=sys.stderr)
             sys.exit(2)
         raise
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, ValueError, KeyError, IndexError, struct.error, zlib.error) as error:
         print("compare: %s" % error, file=sys.stderr)
         sys.exit(2)

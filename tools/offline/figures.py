@@ -77,4 +77,8 @@ def compare(pictures_a, pictures_b):
     result["bounds"] = {"mean": MEAN_BOUND, "tile": TILE_BOUND, "share_of_tiles": TILE_SHARE}
     result["met"] = (abs(luminance["relative_difference"]) <= MEAN_BOUND and tile["mean_absolute"] <= MEAN_BOUND and
                      tile["share_within_1_percent"] >= TILE_SHARE)
+    alone = result["tiles"]["noise_alone"]
+    # Whether two renderers without any difference would have failed.
+    hopeless = not result["met"] and (alone["mean_absolute"] > MEAN_BOUND or alone["p95"] > TILE_BOUND)
+    result["verdict"] = "met" if result["met"] else "undecided: noise alone is above the bounds, render more" if hopeless else "not met"
     return result
