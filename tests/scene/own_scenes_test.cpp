@@ -85,8 +85,8 @@ TEST(OwnScenes, MaterialsAndMasks) {
 }
 
 TEST(OwnScenes, EveryNormalFacesLikeItsTriangle) {
-  for (const std::string name : {"cornell.glb", "cornell-lambert.glb", "cornell-1000-points.glb", "interior.glb", "materials.glb",
-                                 "alpha-mask.glb"}) {
+  for (const std::string name : {"cornell.glb", "cornell-lambert.glb", "cornell-1000-points.glb", "interior.glb",
+                                 "materials.glb", "alpha-mask.glb"}) {
     const Scene scene = own(name);
     EXPECT_EQ(chooseCamera(scene, "", 1.0f).name, "main");
     const PreparedScene p = prepareScene(scene);
