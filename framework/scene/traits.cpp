@@ -20,6 +20,7 @@ std::string traitDefines(const SceneTraits& traits) {
   define(traits.unlit, "UNLIT");
   define(traits.f90, "F90");
   define(traits.environment, "ENVIRONMENT");
+  define(traits.energyCompensation, "ENERGY_COMPENSATION");
   define(traits.animated, "ANIMATED");
   define(traits.deforms, "DEFORMS");
   return lines;

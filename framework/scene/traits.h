@@ -21,6 +21,7 @@ struct SceneTraits {
   bool unlit = false;               ///< SCENE_UNLIT: some material shows its base colour as it is
   bool f90 = false;                 ///< SCENE_F90: some surface reflects less than all light at grazing angles
   bool environment = false;         ///< SCENE_ENVIRONMENT: light from all around, scene/environment.h
+  bool energyCompensation = false;  ///< SCENE_ENERGY_COMPENSATION: asked for, and some surface has a specular lobe
   bool animated = false;  ///< SCENE_ANIMATED: instances, lights and acceleration structure differ from last frame's
   bool deforms = false;   ///< SCENE_DEFORMS: so do vertex positions (skins, morph targets); implies animated
   bool operator==(const SceneTraits&) const = default;
