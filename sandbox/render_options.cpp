@@ -47,7 +47,7 @@ void addStageOptions(CLI::App& command, weir::render::StageOptions& stage) {
   command.add_option("--environment-scale", stage.environmentScale, "Multiplies it")->capture_default_str();
   command
       .add_option("--environment-rotation", stage.environmentRotation,
-                   "Degrees about +Y, counter-clockwise as seen from above")
+                  "Degrees about +Y, counter-clockwise as seen from above")
       ->capture_default_str();
   command.add_option("--camera", stage.camera, "Name of a camera of the scene, or ex,ey,ez,tx,ty,tz[,vfov degrees]");
   addAnimationOptions(command, stage);

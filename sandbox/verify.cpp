@@ -50,10 +50,9 @@ void print(const render::Verification& v, const render::VerifyOptions& o) {
   fmt::print("whole picture: bias {}, between {} and {}\n", percent(d.whole.relative), percent(d.low), percent(d.high));
   for (const image::Scale* s : {&d.coarse, &d.fine}) {
     const image::Comparison& w = s->tiles[s->worst];
-    fmt::print(
-        "tiles of {}²: worst |t| {:.2f} at {}, {} ({} in {}), {:.2f} alarms; half of the light is known to {:.3g} %\n",
-        s->grid.side, std::abs(w.t), s->grid.left(s->worst), s->grid.top(s->worst), percent(w.relative),
-        s->colours[s->worst], image::criticalT(w.freedom, s->level), 100 * s->resolution);
+    fmt::print("tiles of {}²: worst |t| {:.2f} at {}, {} ({} in {}), {:.2f} alarms; half of them known to {:.3g} %\n",
+               s->grid.side, std::abs(w.t), s->grid.left(s->worst), s->grid.top(s->worst), percent(w.relative),
+               s->colours[s->worst], image::criticalT(w.freedom, s->level), 100 * s->resolution);
   }
   switch (d.answer) {
     case image::Answer::Unbiased:
@@ -136,7 +135,7 @@ void addVerifyCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--tolerance", o.verdict.tolerance, "Unbiased means: the whole picture to this, relative")
       ->capture_default_str();
-  command->add_option("--tile-tolerance", o.verdict.tileTolerance, "And half of its light in coarse tiles to this")
+  command->add_option("--tile-tolerance", o.verdict.tileTolerance, "And half of the coarse tiles to this")
       ->capture_default_str();
   command->add_option("--negligible", o.verdict.negligible, "Relative differences up to this are rounding")
       ->check(CLI::Range(0.0, 0.1))

@@ -32,17 +32,12 @@ double withoutSkewness(double t, double skew) {
   return t + skew * t * t / 3.0 + skew * skew * t * t * t / 27.0 + skew / 6.0;
 }
 
-/// Smallest v with half of the weight on values up to it.
-double weightedMedian(std::vector<std::pair<double, double>> valuesAndWeights) {
-  std::sort(valuesAndWeights.begin(), valuesAndWeights.end());
-  double all = 0, seen = 0;
-  for (const auto& [value, weight] : valuesAndWeights) all += weight;
-  if (!(all > 0)) return kInfinity;
-  for (const auto& [value, weight] : valuesAndWeights) {
-    seen += weight;
-    if (seen >= 0.5 * all) return value;
-  }
-  return valuesAndWeights.back().first;
+/// The lower one of an even number; `none` of no values.
+double median(std::vector<double> values, double none) {
+  if (values.empty()) return none;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 double sidak(double alpha, size_t comparisons) {
@@ -60,7 +55,8 @@ Scale testScale(const TileGrid& grid, std::vector<const ColourEstimates*> measur
   s.grid = grid;
   s.comparisons = 3 * measured.size();
   s.level = sidak(alpha, s.comparisons);
-  std::vector<std::pair<double, double>> widths;
+  std::vector<double> widths;
+  bool lit = false;
   for (size_t i = 0; i < measured.size(); ++i) {
     Comparison worst;
     char colour = kColours[0];
@@ -77,9 +73,8 @@ Scale testScale(const TileGrid& grid, std::vector<const ColourEstimates*> measur
     if (worst.p < s.level) s.alarms.push_back(i);
     if (i >= grid.count()) continue;
     const Comparison y = compare((*measured[i])[kLuminance], (*reference[i])[kLuminance], negligible);
-    const double pixels =
-        double(std::min(grid.side, grid.width - grid.left(i))) * std::min(grid.side, grid.height - grid.top(i));
-    if (y.reference > 0) widths.emplace_back(width(y, s.level), y.reference * pixels);
+    lit = lit || y.reference > 0;
+    if (y.reference > 0 && y.standardError > 0) widths.push_back(width(y, s.level));
   }
   // Where p is as good as 0 for many, the largest difference is the place to look at.
   const auto worse = [&](size_t a, size_t b) {
@@ -90,7 +85,7 @@ Scale testScale(const TileGrid& grid, std::vector<const ColourEstimates*> measur
   for (size_t i = 1; i < std::min(s.tiles.size(), grid.count()); ++i) {
     if (worse(i, s.worst)) s.worst = i;
   }
-  s.resolution = weightedMedian(std::move(widths));
+  s.resolution = median(std::move(widths), lit ? 0.0 : kInfinity);
   return s;
 }
 
@@ -157,7 +152,7 @@ void explainUndecided(Verdict& v, const Evidence& measured, const Evidence& refe
   }
   if (v.coarse.resolution > o.tileTolerance) {
     v.reasons.push_back(
-        fmt::format("half of the light falls on tiles of {}² that are known to {:.3g} % or worse; asked is "
+        fmt::format("half of the tiles of {}² are known to {:.3g} % or worse; asked is "
                     "{:.3g} %",
                     v.coarse.grid.side, 100 * v.coarse.resolution, 100 * o.tileTolerance));
     const double ratio = v.coarse.resolution / o.tileTolerance;

@@ -19,7 +19,7 @@ namespace weir::image {
 struct VerdictOptions {
   double alpha = 0.01;       ///< chance of a false alarm over all looks and all comparisons
   double tolerance = 0.005;  ///< relative; "unbiased" says that the whole picture is right to at least this
-  /// Relative; "unbiased" says of coarse tiles that half of the light falls on tiles known to at least this.
+  /// Relative; "unbiased" says of coarse tiles that half of those that vary are known to at least this.
   double tileTolerance = 0.05;
   double negligible = 1e-5;  ///< relative differences up to this are rounding, not bias
   uint64_t fewest = 16;      ///< restarts below which nothing is decided: the t test leans on means being near normal
@@ -53,8 +53,8 @@ struct Scale {
   std::vector<char> colours;      ///< 'R', 'G', 'B' or 'Y' (luminance)
   size_t worst = 0;               ///< the tile with the smallest p
   std::vector<size_t> alarms;     ///< tiles with p < level, worst first
-  /// Relative bias that would be found half of the time, as the median by light: half of the picture's light falls on
-  /// tiles known better. Infinite on a black reference.
+  /// Relative bias that would be found half of the time in one tile alone: median over tiles that are lit and vary.
+  /// 0 where none varies, infinite on a black reference.
   double resolution = 0;
 };
 
