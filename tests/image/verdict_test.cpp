@@ -145,17 +145,19 @@ TEST(Compare, WhereNothingVaries) {
   EXPECT_EQ(compare({std::nan("")}, {1.0}, 0.0).p, 0.0);
 }
 
-// Of 400 verdicts on an unbiased estimator with alpha = 0.01, 4 alarms are expected at most; more than 12 have a
+// Of 250 verdicts on an unbiased estimator with alpha = 0.01, 2.5 alarms are expected at most; more than 9 have a
 // probability of 0.0003 (binomial). The whole picture's p-values are uniform: a Kolmogorov-Smirnov distance above
-// 1.95 / sqrt(400) has one of 0.001. Both kinds of reference, normal and skewed noise.
+// 1.95 / sqrt(250) has one of 0.001. Both kinds of reference, normal and skewed noise.
 TEST(Verdict, FalseAlarmsAreAsRareAsAskedAndPValuesUniform) {
   for (const bool skewed : {false, true}) {
     for (const int reference : {0, 32}) {
       Synthetic s(7);
       s.skewed = skewed;
+      s.width = 32;
+      s.height = 16;
       int alarms = 0, unbiased = 0, missed = 0;
       std::vector<double> ps;
-      for (int i = 0; i < 400; ++i) {
+      for (int i = 0; i < 250; ++i) {
         const Verdict v = s.verdict(64, reference);
         alarms += v.answer == Answer::Biased;
         unbiased += v.answer == Answer::Unbiased;
@@ -164,12 +166,12 @@ TEST(Verdict, FalseAlarmsAreAsRareAsAskedAndPValuesUniform) {
       }
       const double distance = distanceFromUniform(ps);
       std::printf(
-          "%s noise, %d restarts of the reference: %d of 400 biased, %d unbiased, interval missed %d times, KS %.3f\n",
+          "%s noise, %d restarts of the reference: %d of 250 biased, %d unbiased, interval missed %d times, KS %.3f\n",
           skewed ? "skewed" : "normal", reference, alarms, unbiased, missed, distance);
-      EXPECT_LE(alarms, 12);
-      EXPECT_LE(missed, 12);
-      EXPECT_LT(distance, 1.95 / std::sqrt(400.0));
-      EXPECT_GE(unbiased, 385);
+      EXPECT_LE(alarms, 9);
+      EXPECT_LE(missed, 9);
+      EXPECT_LT(distance, 1.95 / std::sqrt(250.0));
+      EXPECT_GE(unbiased, 240);
     }
   }
 }
@@ -229,7 +231,8 @@ TEST(Verdict, LocatesOneWrongTile) {
 
 TEST(Verdict, AShortRunIsUndecidedAndSaysHowLongWouldDo) {
   Synthetic s(10);
-  s.spread = 0.5;
+  s.width = s.height = 16;
+  s.spread = 0.3;
   const VerdictOptions options{.tileTolerance = 1.0};
   double least = 1e30;
   for (int i = 0; i < 50; ++i) {
@@ -241,7 +244,8 @@ TEST(Verdict, AShortRunIsUndecidedAndSaysHowLongWouldDo) {
   // That many are enough most of the time: 9 of 10 verdicts are asked for, and estimates of a spread of 64 restarts
   // vary by 9 %. Under 5 of 10 has a probability below 0.002.
   Synthetic longer(11);
-  longer.spread = 0.5;
+  longer.width = longer.height = 16;
+  longer.spread = 0.3;
   const auto count = static_cast<int>(least);
   std::printf("about %d restarts\n", count);
   int decided = 0;
