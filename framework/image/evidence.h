@@ -34,7 +34,7 @@ struct Estimate {
 
 /// Of a mean over `count` independent values. The variance of a sample of heavy tails is itself known badly:
 ///   Var(s²) = σ⁴ (2 / (n - 1) + excess kurtosis / n)
-/// (Cramér 1946, 27.4.2), and freedom is that of the χ² with the same relative variance, 2 / (Var(s²) / σ⁴). So
+/// (Cramér 1946, 27.4), and freedom is that of the χ² with the same relative variance, 2 / (Var(s²) / σ⁴). So
 /// n - 1 for a sample that looks normal, and about 2 where one value out of n makes all of the variance: one firefly in
 /// 64 restarts says little about how bright fireflies are. Excess kurtosis below 0 counts as 0.
 Estimate estimate(const ShapeMoments& moments, uint64_t count);

@@ -13,9 +13,11 @@ class Verify : public Program {
  protected:
   /// A small picture of the Cornell box, 16 fine tiles, under validation, against restarts of the brute-force direct
   /// light.
-  Ran verify(const std::string& graph, const std::string& more, uint32_t frames = 1, const std::string& scene = "") const {
+  Ran verify(const std::string& graph, const std::string& more, uint32_t frames = 1,
+             const std::string& scene = "") const {
     return weir("verify " + graph + " --scene " + (scene.empty() ? cornell : scene) + " --device " + deviceChoice() +
-                (validationWanted() ? " --validate" : "") + " --size 32x32 --tile 8 --frames " + std::to_string(frames) + " " + more);
+                (validationWanted() ? " --validate" : "") + " --size 32x32 --tile 8 --frames " +
+                std::to_string(frames) + " " + more);
   }
   std::string rendered() const { return "--reference-graph " + allLights + " "; }
   /// A reference with its standard error, of 64 restarts.
@@ -124,8 +126,7 @@ TEST_F(Verify, GoesOnWhileUndecidedWhenAllowedTo) {
 
 TEST_F(Verify, AMovingSceneIsComparedAtItsLastFrame) {
   const std::string moving = sourcePath("scenes/cornell-moving.glb");
-  const Ran r = verify(allLights,
-                       rendered() + "--animate --time 0.3 --time-step 0.1 --json " + file("v.json"), moving);
+  const Ran r = verify(allLights, rendered() + "--animate --time 0.3 --time-step 0.1 --json " + file("v.json"), moving);
   EXPECT_EQ(r.status, 0) << r.out << r.err;
   EXPECT_TRUE(has(numbers().at("animation"), "at 0.5 s")) << numbers().at("animation");
 }
