@@ -60,6 +60,20 @@ TEST_F(Verify, ReuseWithVisibilityIsUnbiasedAndWithoutIsNot) {
   EXPECT_EQ(bad.status, 1) << bad.out << bad.err;
 }
 
+// Without a reference direct light is the truth: light that bounces is too much.
+TEST_F(Verify, DirectLightIsTheDefaultReference) {
+  const Ran direct = verify(allLights, "--restarts 32 --tolerance 0.02");
+  EXPECT_EQ(direct.status, 0) << direct.out << direct.err;
+  EXPECT_TRUE(has(direct.out, "reference.json")) << direct.out;
+  const std::string path = sourcePath("graphs/reference.json");
+  const Ran bounces = verify(path, "--restarts 16 --set path.maxBounces=1 --tolerance 0.5");
+  EXPECT_EQ(bounces.status, 1) << bounces.out << bounces.err;
+  const Ran both =
+      verify(path, "--restarts 16 --set path.maxBounces=1 --tolerance 0.5 --tile-tolerance 10 --reference-graph " +
+                       path + " --reference-set path.maxBounces=1");
+  EXPECT_EQ(both.status, 0) << both.out << both.err;
+}
+
 TEST_F(Verify, HalfAPercentTooBrightIsBiased) {
   const std::string more = rendered() + "--out " + file("map.png") + " --json " + file("v.json");
   const Ran r = verify(scaled, "--set scale.factor=1.005 " + more);
@@ -126,7 +140,8 @@ TEST_F(Verify, GoesOnWhileUndecidedWhenAllowedTo) {
 
 TEST_F(Verify, AMovingSceneIsComparedAtItsLastFrame) {
   const std::string moving = sourcePath("scenes/cornell-moving.glb");
-  const Ran r = verify(allLights, rendered() + "--animate --time 0.3 --time-step 0.1 --json " + file("v.json"), moving);
+  const Ran r =
+      verify(allLights, rendered() + "--animate --time 0.3 --time-step 0.1 --json " + file("v.json"), 3, moving);
   EXPECT_EQ(r.status, 0) << r.out << r.err;
   EXPECT_TRUE(has(numbers().at("animation"), "at 0.5 s")) << numbers().at("animation");
 }
