@@ -1,7 +1,7 @@
 // Do the unbiased settings of restir_di agree with the brute-force reference? Several verdicts of `weir verify` over
 // one scene and one reference. A program rather than a test: on a GPU it runs long enough to resolve a bias of some
 // hundredths of a percent. Prints a row a setting and, with --json, writes the raw numbers.
-//   agreement --scene scenes/cornell.glb --size 256 --restarts 256 --frames 4
+//   agreement --scene scenes/cornell.glb --size 256 --restarts 256 --frames 4 --modes
 //   agreement --scene scenes/cornell-moving.glb --animate --time 0.3 --time-step 0.1 --size 256 --restarts 256 --frames
 //   6
 #include <fmt/format.h>
@@ -23,6 +23,7 @@ struct Words {
   std::string device, trace = "auto", json, graphs = "graphs";
   uint32_t size = 256, restarts = 64, frames = 4, referenceRestarts = 16, referenceSamples = 4, tile = 16, seed = 0;
   std::vector<std::string> set;
+  bool modes = false;
 };
 
 /// One sample a restart: the mean of its frames, or, where a clip moves the scene, the last one, number words.frames
@@ -38,6 +39,51 @@ image::EvidenceCollector collect(const Words& words, render::Laboratory& laborat
   return result;
 }
 
+struct Setting {
+  std::string name;
+  std::vector<std::string> set, disable;
+};
+
+/// Parameters of one mode for every reuse; `late`: no visibility before the last shadow ray.
+std::vector<std::string> modeSettings(const std::string& mis, bool late) {
+  std::vector<std::string> set;
+  for (const std::string pass : {"temporal", "spatial"}) {
+    set.push_back(pass + ".mis=" + mis);
+    set.push_back(fmt::format("{}.visibilityRays={}", pass, !late));
+  }
+  set.push_back(fmt::format("initial.visibility={}", !late));
+  return set;
+}
+
+/// Pairwise with rays, in four kinds of reuse; with --modes every combination that docs/estimators.md calls unbiased.
+std::vector<Setting> settingsOf(const Words& words) {
+  const std::vector<Setting> reuses = {{"temporal", {}, {"spatial"}}, {"spatial", {}, {"temporal"}}, {"both", {}, {}}};
+  std::vector<Setting> settings = {{"no reuse", {}, {"temporal", "spatial"}}};
+  if (!words.modes) {
+    for (Setting reuse : reuses) {
+      reuse.set = modeSettings("pairwise", false);
+      settings.push_back(reuse);
+    }
+    return settings;
+  }
+  settings.push_back({"no reuse, bsdfRays", {"initial.bsdfRays=1"}, {"temporal", "spatial"}});
+  for (const char* mis : {"z", "balance", "pairwise"}) {
+    for (const bool late : {false, true}) {
+      for (const Setting& reuse : reuses)
+        settings.push_back({fmt::format("{}, {}, {}", mis, late ? "late" : "rays", reuse.name), modeSettings(mis, late),
+                            reuse.disable});
+      Setting twice{
+          fmt::format("{}, {}, both, spatial twice", mis, late ? "late" : "rays"), modeSettings(mis, late), {}};
+      twice.set.emplace_back("spatial.iterations=2");
+      settings.push_back(twice);
+    }
+    Setting rays{fmt::format("{}, rays, both, bsdfRays", mis), modeSettings(mis, false), {}};
+    rays.set.emplace_back("initial.bsdfRays=1");
+    settings.push_back(rays);
+  }
+  return settings;
+}
+
 int run(const Words& words) {
   render::Laboratory laboratory({});
   laboratory.open(words.stage, {.device = words.device, .trace = words.trace}, 1.0f);
@@ -46,14 +92,7 @@ int run(const Words& words) {
               words.referenceRestarts, 1, words.seed + 1000)
           .evidence();
 
-  const std::vector<std::string> rays = {"temporal.mis=pairwise", "spatial.mis=pairwise",
-                                         "temporal.visibilityRays=true", "spatial.visibilityRays=true"};
-  struct Setting {
-    const char* name;
-    std::vector<std::string> disable;
-  };
-  const Setting settings[] = {
-      {"no reuse", {"temporal", "spatial"}}, {"temporal", {"spatial"}}, {"spatial", {"temporal"}}, {"both", {}}};
+  const std::vector<Setting> settings = settingsOf(words);
   Json j = {{"device", laboratory.device().info().name},
             {"scene", laboratory.stage().sceneLabel},
             {"lights", laboratory.stage().lightsLabel},
@@ -71,28 +110,31 @@ int run(const Words& words) {
   bool passed = true;
   for (const Setting& s : settings) {
     graph::Overrides overrides;
-    overrides.set = rays;
+    overrides.set = s.set;
     overrides.set.insert(overrides.set.end(), words.set.begin(), words.set.end());
     overrides.disable = s.disable;
     const auto measured =
         collect(words, laboratory, "restir_di.json", overrides, words.restarts, words.frames, words.seed);
     const image::Verdict v = image::decide(measured.evidence(), reference, measured.nonFinite());
     const image::Comparison& worst = v.fine.tiles[v.fine.worst];
-    fmt::print("{:9} {:9} worst |t| {:5.2f} of {} tiles, mean bias {:+.4f} % ({:+.4f} … {:+.4f}), a tile to {:.2f} %\n",
-               s.name, image::answerName(v.answer), std::abs(worst.t), v.fine.tiles.size(), 100 * v.whole.relative,
-               100 * v.low, 100 * v.high, 100 * v.fine.resolution);
-    for (const std::string& reason : v.reasons) fmt::print("          {}\n", reason);
+    fmt::print(
+        "{:32} {:9} worst |t| {:5.2f} of {} tiles, mean bias {:+.4f} % ({:+.4f} … {:+.4f}), a tile to {:.2f} %\n",
+        s.name, image::answerName(v.answer), std::abs(worst.t), v.fine.tiles.size(), 100 * v.whole.relative,
+        100 * v.low, 100 * v.high, 100 * v.fine.resolution);
+    for (const std::string& reason : v.reasons) fmt::print("{:32} {}\n", "", reason);
     std::fflush(stdout);
     passed = passed && v.answer != image::Answer::Biased;
     j["settings"].push_back({{"name", s.name},
                              {"verdict", image::answerName(v.answer)},
-                             {"worst_t", worst.t},
+                             {"worst_t", std::abs(worst.t)},
                              {"worst_tile", {v.fine.grid.left(v.fine.worst), v.fine.grid.top(v.fine.worst)}},
                              {"worst_relative", worst.relative},
+                             {"bound", image::criticalT(worst.freedom, v.fine.level)},
                              {"tiles", v.fine.tiles.size()},
                              {"mean_bias", v.whole.relative},
                              {"interval", {v.low, v.high}},
-                             {"detectable", v.fine.resolution}});
+                             {"detectable", v.fine.resolution},
+                             {"passed", v.answer != image::Answer::Biased}});
   }
   if (!words.json.empty()) render::writeTextFile(words.json, j.dump(2) + "\n");
   return passed ? 0 : 3;
@@ -122,6 +164,7 @@ int main(int argc, char** argv) {
   app.add_option("--device", words.device);
   app.add_option("--trace", words.trace);
   app.add_option("--graphs", words.graphs, "Folder with restir_di.json and all_lights.json");
+  app.add_flag("--modes", words.modes, "Every unbiased combination of MIS weights, visibility and reuse");
   app.add_option("--json", words.json);
   CLI11_PARSE(app, argc, argv);
   try {
