@@ -50,6 +50,8 @@ void addStageOptions(CLI::App& command, weir::render::StageOptions& stage) {
                   "Degrees about +Y, counter-clockwise as seen from above")
       ->capture_default_str();
   command.add_option("--camera", stage.camera, "Name of a camera of the scene, or ex,ey,ez,tx,ty,tz[,vfov degrees]");
+  command.add_flag("--energy-compensation", stage.energyCompensation,
+                   "Add the light that rough specular surfaces reflect more than once");
   addAnimationOptions(command, stage);
 }
 

@@ -16,7 +16,7 @@ void parseSize(const std::string& text, uint32_t& width, uint32_t& height);
 
 /// --set, --enable, --disable
 void addOverrideOptions(CLI::App& command, weir::graph::Overrides& overrides);
-/// --scene, --lights, --camera, --environment, --animate and what belongs to them
+/// --scene, --lights, --camera, --environment, --energy-compensation, --animate and what belongs to them
 void addStageOptions(CLI::App& command, weir::render::StageOptions& stage);
 /// --trace, --device, --validate
 void addDeviceOptions(CLI::App& command, std::string& device, std::string& trace, bool& validation);

@@ -126,6 +126,7 @@ void requireSameSubject(const VerifyOptions& o, const Stage& stage, const image:
   own.attributes = {{"weir.scene", stage.sceneLabel},
                     {"weir.camera", stage.cameraLabel},
                     {"weir.lights", stage.lightsLabel},
+                    {"weir.shading", stage.shadingLabel},
                     {"weir.animation", animationOf(o, stage)}};
   const std::vector<std::string> conflicts = image::attributeConflicts(own, reference);
   if (!conflicts.empty())
