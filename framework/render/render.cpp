@@ -101,6 +101,7 @@ std::map<std::string, std::string> header(const RenderOptions& o, const Stage& s
   }
   h["weir.params"] = params;
   h["weir.seed"] = std::to_string(o.seed);
+  h["weir.restarts"] = std::to_string(o.restarts);
   h["weir.size"] = fmt::format("{}x{}", o.width, o.height);
   h["weir.frames"] =
       fmt::format("{} from {}, mean of last {}, {} restarts", o.frames, o.firstFrame, o.average, o.restarts);
