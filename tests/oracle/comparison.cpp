@@ -23,7 +23,8 @@ struct TileSums {
 
 std::string Verdict::text() const {
   return fmt::format(
-      "worst |t| {:.2f} of {} tiles (bound {:.2f})  worst tile {:+.3f} % at {}, {} ({:.2f} of what is allowed)  mean bias "
+      "worst |t| {:.2f} of {} tiles (bound {:.2f})  worst tile {:+.3f} % at {}, {} ({:.2f} of what is allowed)  mean "
+      "bias "
       "{:+.4f} % (99 %: {:+.4f} … {:+.4f})  a tile to {:.2f} %  {}",
       worstT, tiles, bound, 100 * worstRelative, left, top, worstExcess, 100 * bias, 100 * low, 100 * high,
       100 * detectable, passed ? "agree" : "DIFFER");
@@ -44,7 +45,9 @@ Verdict compare(const image::TileTest& test, double tolerance) {
     const double allowed = test.bound * tile.standardError + (tolerance + kRounding) * reference;
     finite = finite && std::isfinite(tile.mean) && std::isfinite(allowed);
     if (tile.standardError > kRounding * reference) v.worstT = std::max(v.worstT, difference / tile.standardError);
-    const double excess = difference <= 0 ? 0.0 : allowed > 0 ? difference / allowed : std::numeric_limits<double>::infinity();
+    const double excess = difference <= 0 ? 0.0
+                          : allowed > 0   ? difference / allowed
+                                          : std::numeric_limits<double>::infinity();
     if (excess > v.worstExcess) {
       v.worstExcess = excess;
       v.worstRelative = tile.relativeBias;

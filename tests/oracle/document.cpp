@@ -12,15 +12,12 @@
 namespace weir::oracle {
 namespace {
 
-// Known: done in full, but for transmission, which Weir ignores by decision (docs/gltf.md): glass is an opaque dielectric.
-const std::set<std::string> kKnown = {"KHR_lights_punctual",
-                                      "KHR_materials_emissive_strength",
-                                      "KHR_materials_ior",
-                                      "KHR_materials_pbrSpecularGlossiness",
-                                      "KHR_materials_specular",
-                                      "KHR_materials_transmission",
-                                      "KHR_materials_unlit",
-                                      "KHR_texture_transform"};
+// Known: done in full, but for transmission, which Weir ignores by decision (docs/gltf.md): glass is an opaque
+// dielectric.
+const std::set<std::string> kKnown = {"KHR_lights_punctual",    "KHR_materials_emissive_strength",
+                                      "KHR_materials_ior",      "KHR_materials_pbrSpecularGlossiness",
+                                      "KHR_materials_specular", "KHR_materials_transmission",
+                                      "KHR_materials_unlit",    "KHR_texture_transform"};
 
 std::vector<unsigned char> readFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -37,12 +34,18 @@ std::vector<unsigned char> fromBase64(std::string_view text) {
   uint32_t bits = 0, count = 0;
   for (const char c : text) {
     uint32_t v = 0;
-    if (c >= 'A' && c <= 'Z') v = c - 'A';
-    else if (c >= 'a' && c <= 'z') v = c - 'a' + 26;
-    else if (c >= '0' && c <= '9') v = c - '0' + 52;
-    else if (c == '+') v = 62;
-    else if (c == '/') v = 63;
-    else break;
+    if (c >= 'A' && c <= 'Z')
+      v = c - 'A';
+    else if (c >= 'a' && c <= 'z')
+      v = c - 'a' + 26;
+    else if (c >= '0' && c <= '9')
+      v = c - '0' + 52;
+    else if (c == '+')
+      v = 62;
+    else if (c == '/')
+      v = 63;
+    else
+      break;
     bits = bits << 6 | v;
     count += 6;
     if (count >= 8) bytes.push_back(static_cast<unsigned char>(bits >> (count -= 8)));
@@ -57,13 +60,20 @@ struct Component {
 
 Component componentOf(int type) {
   switch (type) {
-    case 5120: return {1, 127.0};
-    case 5121: return {1, 255.0};
-    case 5122: return {2, 32767.0};
-    case 5123: return {2, 65535.0};
-    case 5125: return {4, 4294967295.0};
-    case 5126: return {4, 1.0};
-    default: return {0, 0.0};
+    case 5120:
+      return {1, 127.0};
+    case 5121:
+      return {1, 255.0};
+    case 5122:
+      return {2, 32767.0};
+    case 5123:
+      return {2, 65535.0};
+    case 5125:
+      return {4, 4294967295.0};
+    case 5126:
+      return {4, 1.0};
+    default:
+      return {0, 0.0};
   }
 }
 
@@ -76,12 +86,18 @@ double load(const unsigned char* bytes) {
 
 double number(int type, const unsigned char* bytes) {
   switch (type) {
-    case 5120: return load<int8_t>(bytes);
-    case 5121: return load<uint8_t>(bytes);
-    case 5122: return load<int16_t>(bytes);
-    case 5123: return load<uint16_t>(bytes);
-    case 5125: return load<uint32_t>(bytes);
-    default: return load<float>(bytes);
+    case 5120:
+      return load<int8_t>(bytes);
+    case 5121:
+      return load<uint8_t>(bytes);
+    case 5122:
+      return load<int16_t>(bytes);
+    case 5123:
+      return load<uint16_t>(bytes);
+    case 5125:
+      return load<uint32_t>(bytes);
+    default:
+      return load<float>(bytes);
   }
 }
 
@@ -110,8 +126,7 @@ Document::Document(const std::string& path) : path_(path) {
     }
     for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
       for (const Json& name : json_.value(list, Json::array()))
-        if (!kKnown.contains(name.get<std::string>()))
-          fail(list, "the oracle doesn't know " + name.get<std::string>());
+        if (!kKnown.contains(name.get<std::string>())) fail(list, "the oracle doesn't know " + name.get<std::string>());
     }
     const Json list = json_.value("buffers", Json::array());
     for (size_t i = 0; i < list.size(); ++i) {

@@ -1,5 +1,5 @@
-// A glTF file as JSON and bytes, and its accessors as plain numbers. Written from the glTF 2.0 specification alone: the oracle
-// shares no reader with the framework, so that a misreading of a file is not made twice.
+// A glTF file as JSON and bytes, and its accessors as plain numbers. Written from the glTF 2.0 specification alone: the
+// oracle shares no reader with the framework, so that a misreading of a file is not made twice.
 #pragma once
 
 #include <cstdint>

@@ -40,8 +40,8 @@ class AreaLights {
  private:
   const Model& model_;
   std::vector<uint32_t> triangles_;
-  std::vector<double> upTo_;      ///< sums of the chances, the last is 1
-  std::vector<double> perArea_;   ///< per triangle of the model: chance / area, 0 for dark ones
+  std::vector<double> upTo_;     ///< sums of the chances, the last is 1
+  std::vector<double> perArea_;  ///< per triangle of the model: chance / area, 0 for dark ones
 };
 
 }  // namespace weir::oracle

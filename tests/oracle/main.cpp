@@ -32,15 +32,18 @@ void readSize(const std::string& text, oracle::Options& o) {
   unsigned width = 0, height = 0;
   char rest = 0;
   const int found = std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest);
-  if (found == 1 && text.find_first_not_of("0123456789") == std::string::npos) height = width;
-  else if (found != 2) throw InputError("--size " + text + ": neither WxH nor a side");
+  if (found == 1 && text.find_first_not_of("0123456789") == std::string::npos)
+    height = width;
+  else if (found != 2)
+    throw InputError("--size " + text + ": neither WxH nor a side");
   if (width == 0 || height == 0 || width > 16384 || height > 16384)
     throw InputError("--size " + text + ": each side must be 1 … 16384");
   o.width = width;
   o.height = height;
 }
 
-/// What `weir compare` looks at. The framework reads the scene for these words alone: nothing of it reaches the picture.
+/// What `weir compare` looks at. The framework reads the scene for these words alone: nothing of it reaches the
+/// picture.
 std::map<std::string, std::string> header(const Words& words) {
   const oracle::Options& o = words.options;
   const float aspect = static_cast<float>(o.width) / static_cast<float>(o.height);
@@ -90,8 +93,10 @@ int run(Words& words) {
     for (const std::string& file : {words.out, words.error})
       if (!file.empty()) render::checkWritable(file);
     renderPicture(words, picture, error);
-    if (words.out.ends_with(".png")) image::writePng(words.out, picture, image::Encoding::Radiance);
-    else if (!words.out.empty()) image::writeExr(words.out, picture);
+    if (words.out.ends_with(".png"))
+      image::writePng(words.out, picture, image::Encoding::Radiance);
+    else if (!words.out.empty())
+      image::writeExr(words.out, picture);
     if (!words.error.empty()) image::writeExr(words.error, error);
   }
   if (words.against.empty()) return 0;

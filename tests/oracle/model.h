@@ -79,8 +79,8 @@ struct Model {
 /// Throws InputError; also for what the oracle doesn't know.
 Model loadModel(const std::string& path, const std::optional<Moment>& moment = {});
 
-/// `--camera`: empty for the file's first, a name, or ex,ey,ez,tx,ty,tz[,vfov degrees]. Throws InputError; also for a scene without
-/// a camera: the one that frames it is a convention of the program's, not a truth.
+/// `--camera`: empty for the file's first, a name, or ex,ey,ez,tx,ty,tz[,vfov degrees]. Throws InputError; also for a
+/// scene without a camera: the one that frames it is a convention of the program's, not a truth.
 Camera chooseCamera(const Model& model, const std::string& text);
 
 // The parts of loadModel.

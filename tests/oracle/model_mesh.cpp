@@ -143,8 +143,7 @@ void addMesh(const Document& document, const Pose& pose, size_t index, Model& mo
         const glm::dmat4& m = toWorld[joints.empty() ? 0 : c];
         t.position[k] = glm::dvec3(glm::vec3(glm::dvec3(m * glm::dvec4(vec3At(v.position, c), 1.0))));
         if (v.normal) t.normal[k] = unitOr(sign * cofactor(glm::dmat3(m)) * vec3At(v.normal, c), glm::dvec3(0));
-        if (wantsTangents)
-          t.tangent[k] = glm::dvec4(glm::dmat3(m) * vec3At(v.tangent, c), v.tangent.at(c, 3) * sign);
+        if (wantsTangents) t.tangent[k] = glm::dvec4(glm::dmat3(m) * vec3At(v.tangent, c), v.tangent.at(c, 3) * sign);
         if (v.uv0) t.uv[0][k] = {v.uv0.at(c, 0), v.uv0.at(c, 1)};
         if (v.uv1) t.uv[1][k] = {v.uv1.at(c, 0), v.uv1.at(c, 1)};
         if (v.color)

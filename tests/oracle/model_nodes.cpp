@@ -106,15 +106,18 @@ void applyClip(const Document& document, const Moment& moment, std::vector<Local
     if (l.matrix) document.fail("animations", "the oracle doesn't animate nodes with a matrix");
     const std::string path = target.at("path");
     const Json& sampler = clip->at("samplers").at(channel.at("sampler").get<size_t>());
-    const size_t components = path == "rotation"  ? 4
-                              : path == "weights" ? morphTargets(root, root["nodes"][node])
-                                                  : 3;
+    const size_t components = path == "rotation" ? 4 : path == "weights" ? morphTargets(root, root["nodes"][node]) : 3;
     const std::vector<double> v = valueAt(document, sampler, components, moment.seconds, path == "rotation");
-    if (path == "translation") l.translation = {v[0], v[1], v[2]};
-    else if (path == "scale") l.scale = {v[0], v[1], v[2]};
-    else if (path == "rotation") l.rotation = glm::normalize(glm::dquat(v[3], v[0], v[1], v[2]));
-    else if (path == "weights") l.weights = v;
-    else document.fail("animations", "unknown path " + path);
+    if (path == "translation")
+      l.translation = {v[0], v[1], v[2]};
+    else if (path == "scale")
+      l.scale = {v[0], v[1], v[2]};
+    else if (path == "rotation")
+      l.rotation = glm::normalize(glm::dquat(v[3], v[0], v[1], v[2]));
+    else if (path == "weights")
+      l.weights = v;
+    else
+      document.fail("animations", "unknown path " + path);
   }
 }
 
@@ -136,9 +139,12 @@ PunctualLight lightOf(const Document& document, size_t index, const glm::dmat4& 
   const Json& from = document.json().at("extensions").at("KHR_lights_punctual").at("lights").at(index);
   PunctualLight light;
   const std::string kind = from.at("type");
-  if (kind == "spot") light.kind = PunctualLight::Kind::Spot;
-  else if (kind == "directional") light.kind = PunctualLight::Kind::Directional;
-  else if (kind != "point") document.fail("KHR_lights_punctual", "unknown type " + kind);
+  if (kind == "spot")
+    light.kind = PunctualLight::Kind::Spot;
+  else if (kind == "directional")
+    light.kind = PunctualLight::Kind::Directional;
+  else if (kind != "point")
+    document.fail("KHR_lights_punctual", "unknown type " + kind);
   light.position = world[3];
   light.direction = glm::normalize(-glm::dvec3(world[2]));
   light.intensity = vec3Of(from, "color", glm::dvec3(1)) * from.value("intensity", 1.0);

@@ -68,8 +68,8 @@ class Integrator {
       for (const PunctualLight& light : model_.lights) sum += lit(s, from, light);
       return sum;
     }
-    // One of them, in proportion to what it brings to the surface if nothing is between: more than zero wherever the light
-    // counts, as light below the surface doesn't.
+    // One of them, in proportion to what it brings to the surface if nothing is between: more than zero wherever the
+    // light counts, as light below the surface doesn't.
     thread_local std::vector<double> upTo;
     upTo.clear();
     double total = 0;

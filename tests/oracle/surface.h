@@ -32,7 +32,8 @@ struct Surface {
 };
 
 /// Level 0 of textures without a cone.
-Surface surfaceAt(const Model& model, const Hit& hit, const glm::dvec3& direction, const std::optional<Cone>& cone = {});
+Surface surfaceAt(const Model& model, const Hit& hit, const glm::dvec3& direction,
+                  const std::optional<Cone>& cone = {});
 
 /// Alpha of a triangle's point: 1 for OPAQUE, 0 or 1 for MASK, what it says for BLEND. Always level 0.
 double coverageAt(const Model& model, uint32_t triangle, const glm::dvec3& barycentrics);

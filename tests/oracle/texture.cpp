@@ -43,8 +43,8 @@ int wrapped(int i, int side, Wrap wrap) {
 Image decodeImage(const std::vector<unsigned char>& bytes, const std::string& name) {
   Image image;
   int channels = 0;
-  stbi_uc* texels = stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &image.width, &image.height,
-                                          &channels, 4);
+  stbi_uc* texels =
+      stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &image.width, &image.height, &channels, 4);
   if (texels == nullptr) throw InputError(name + ": " + stbi_failure_reason());
   image.texels.resize(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
   for (size_t i = 0; i < image.texels.size(); ++i)
@@ -106,7 +106,8 @@ glm::dvec4 Texture::filtered(size_t level, const glm::dvec2& uv, bool nearest) c
   const glm::dvec2 floor = glm::floor(p), f = p - floor;
   const int x = static_cast<int>(floor.x), y = static_cast<int>(floor.y);
   if (nearest) return fetch(x, y);
-  return glm::mix(glm::mix(fetch(x, y), fetch(x + 1, y), f.x), glm::mix(fetch(x, y + 1), fetch(x + 1, y + 1), f.x), f.y);
+  return glm::mix(glm::mix(fetch(x, y), fetch(x + 1, y), f.x), glm::mix(fetch(x, y + 1), fetch(x + 1, y + 1), f.x),
+                  f.y);
 }
 
 glm::dvec4 Texture::at(const glm::dvec2& uv, double level) const {

@@ -1,5 +1,5 @@
-// Images as a sampler of glTF sees them: sRGB decoded before filtering, bilinear, wrapped, with levels of detail that are means
-// over areas of the level before (docs/gltf.md, "Levels of detail").
+// Images as a sampler of glTF sees them: sRGB decoded before filtering, bilinear, wrapped, with levels of detail that
+// are means over areas of the level before (docs/gltf.md, "Levels of detail").
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@ enum class Wrap : unsigned char { Repeat, Clamp, Mirror };
 
 struct Sampling {
   Wrap s = Wrap::Repeat, t = Wrap::Repeat;
-  bool nearest = false;         ///< when magnified
+  bool nearest = false;  ///< when magnified
   bool nearestMinified = false;
-  bool levels = true;           ///< has levels at all
+  bool levels = true;  ///< has levels at all
   bool nearestLevel = false;
 };
 

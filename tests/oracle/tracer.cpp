@@ -94,19 +94,21 @@ Tracer::Tracer(const Model& model) : model_(model), scene_(std::make_unique<Scen
   if (scene_->device == nullptr) throw RuntimeError("Embree: no device");
   scene_->scene = rtcNewScene(scene_->device);
   // Without RTC_BUILD_QUALITY_HIGH no triangle is split.
-  rtcSetSceneFlags(scene_->scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  rtcSetSceneFlags(scene_->scene,
+                   static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   RTCGeometry geometry = rtcNewGeometry(scene_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   const size_t n = model.triangles.size();
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                               3 * sizeof(float), 3 * n));
-  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                 3 * sizeof(uint32_t), n));
+  auto* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * n));
+  auto* indices = static_cast<uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), n));
   if (vertices == nullptr || indices == nullptr) {
     rtcReleaseGeometry(geometry);
     throw RuntimeError("Embree: no memory");
   }
   for (size_t i = 0; i < 3 * n; ++i) {
-    for (int c = 0; c < 3; ++c) vertices[3 * i + size_t(c)] = static_cast<float>(model.triangles[i / 3].position[i % 3][c]);
+    for (int c = 0; c < 3; ++c)
+      vertices[3 * i + size_t(c)] = static_cast<float>(model.triangles[i / 3].position[i % 3][c]);
     indices[i] = static_cast<uint32_t>(i);
   }
   rtcCommitGeometry(geometry);

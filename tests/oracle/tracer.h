@@ -34,8 +34,8 @@ class Tracer {
   std::unique_ptr<Scene> scene_;
 };
 
-/// Where rays that leave a surface start: off its plane by some units in the last place of a float, and as far back on the way
-/// that led there: a point in a corner of two planes lies before both.
+/// Where rays that leave a surface start: off its plane by some units in the last place of a float, and as far back on
+/// the way that led there: a point in a corner of two planes lies before both.
 glm::dvec3 leave(const Surface& s);
 
 }  // namespace weir::oracle
