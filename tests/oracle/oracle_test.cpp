@@ -366,6 +366,38 @@ TEST(OracleTextures, FilterAndLevels) {
   EXPECT_NEAR(colour.at({0.7, 0.25}).r, std::pow((75 / 255.0 + 0.055) / 1.055, 2.4), 1e-12);
 }
 
+/// What the judge says of a picture that is brighter by a factor in one tile, with pixels' errors of 2 %: 0.125 % a
+/// tile, and as much again for the other side.
+Verdict verdictOf(double factor, double tolerance) {
+  image::Picture a{64, 64, std::vector<float>(4 * 64 * 64, 1.0f), {}}, error = a, b = a;
+  Random random(3);
+  for (uint32_t y = 0; y < 64; ++y) {
+    for (uint32_t x = 0; x < 64; ++x) {
+      // Of mean 1 and variance 0.02².
+      const double u = std::sqrt(12.0) * 0.02 * (random.next() - 0.5),
+                   v = std::sqrt(12.0) * 0.02 * (random.next() - 0.5);
+      for (int c = 0; c < 3; ++c) {
+        a.at(x, y)[c] = static_cast<float>((1 + u) * (x / 16 == 2 && y / 16 == 1 ? factor : 1.0));
+        b.at(x, y)[c] = static_cast<float>(1 + v);
+        error.at(x, y)[c] = 0.02f;
+      }
+    }
+  }
+  return compare(a, error, b, error, 16, tolerance);
+}
+
+TEST(OracleComparison, FindsATileThatDiffers) {
+  const Verdict same = verdictOf(1.0, 0.0), brighter = verdictOf(1.015, 0.0), tolerated = verdictOf(1.015, 0.02);
+  EXPECT_TRUE(same.passed) << same.text();
+  EXPECT_GT(same.worstT, 0.5);  // of 16: with errors as they are
+  // The bound for 16 tiles is 3.42, the error of a difference 0.177 %: half of the tiles would show 0.6 %.
+  EXPECT_NEAR(same.detectable, 3.42 * 0.00177, 1e-4);
+  EXPECT_FALSE(brighter.passed) << brighter.text();
+  EXPECT_EQ(brighter.left, 32u);
+  EXPECT_EQ(brighter.top, 16u);
+  EXPECT_TRUE(tolerated.passed) << tolerated.text();
+}
+
 TEST(OracleReader, RefusesWhatItDoesNotKnow) {
   const test::TemporaryFolder folder;
   const auto refusal = [&](const std::string& text) -> std::string {
