@@ -54,7 +54,7 @@ done | awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' | sort -u | while read -r
     *) cp -L "$path" "$out/lib/$name" ;;
   esac
 done
-loader=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p | awk '$1 == "libvulkan.so.1" && /x86-64/ { print $NF; exit }')
+loader=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p | awk '$1 == "libvulkan.so.1" && /x86-64/ && !found++ { print $NF }')
 cp -L "$loader" "$out/lib/loader/libvulkan.so.1"
 
 binaries=("${programs[@]/#/$out/bin/}" "$out"/bin/*.so "$out"/lib/*.so* "$out"/lib/*/*.so*)
