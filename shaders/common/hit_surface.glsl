@@ -3,6 +3,7 @@
 #define WEIR_HIT_SURFACE
 
 #include "material.glsl"
+#include "rounding.glsl"
 #include "scene.glsl"
 #include "surface.glsl"
 #include "trace_types.glsl"
@@ -19,8 +20,11 @@ struct HitSurface {
   vec3 position;
 };
 
-// `jitter` 0 … 254 a side: where in its pixel the ray was shot (127: the centre).
-HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter) {
+// What the 16 + 16 bits of a vertex's normal may be off by, radians.
+const float kVertexNormalError = 7e-5;
+
+// `jitter` 0 … 254 a side: where in its pixel the ray was shot (127: the centre). Everything that is packed is rounded by `rounding`.
+HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter, Rounding rounding) {
   const uvec4 t = sceneTriangles[hit.triangle];
   const Instance instance = sceneInstances[hit.instance];
   const Material m = sceneMaterials[t.w];
@@ -45,6 +49,10 @@ HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter) {
   const Vertex v0 = sceneVertices[t.x], v1 = sceneVertices[t.y], v2 = sceneVertices[t.z];
   vec3 n = cofactor * (b.x * unpackNormal(v0.normal) + b.y * unpackNormal(v1.normal) + b.z * unpackNormal(v2.normal));
   n = dot(n, n) > 0.0 ? normalize(n) : geometric;
+  // A flat triangle's normal is its plane's: rounded at the vertices, it would be off the same way everywhere, and light that grazes
+  // it by as much as that times tan θ.
+  const vec3 off = cross(n, geometric);
+  if (dot(off, off) < kVertexNormalError * kVertexNormalError && dot(n, geometric) > 0.0) n = geometric;
 #ifdef SCENE_MIPMAPS
   const Lookup at = lookupAt(t, Corners(p0, p1, p2), hit, origin, direction);
 #else
@@ -82,10 +90,11 @@ HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter) {
   const vec3 view = -direction;
   r.surface.distance = length(r.position - origin);
   r.surface.geometricNormal = packNormal(geometric * side);
-  r.surface.shadingNormal = packNormal(facingNormal(n * side, view));
-  r.surface.diffuse = packAlbedo(reflection.diffuse);
-  r.surface.specular = packAlbedo(reflection.f0);
-  r.surface.roughnessJitter = jitter.x | (jitter.y << 8u) | (packRoughness(reflection.roughness, reflection.f90) << 16u);
+  r.surface.shadingNormal = packNormalBy(facingNormal(n * side, view), rounding.normal);
+  r.surface.diffuse = packAlbedo(reflection.diffuse, rounding.diffuse);
+  r.surface.specular = packAlbedo(reflection.f0, rounding.specular);
+  const uint roughness = packRoughness(reflection.roughness, reflection.f90, vec2(rounding.roughness, rounding.f90));
+  r.surface.roughnessJitter = jitter.x | (jitter.y << 8u) | (roughness << 16u);
   return r;
 }
 

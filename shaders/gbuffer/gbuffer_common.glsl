@@ -21,7 +21,7 @@ void writePixel(uvec2 pixel, Hit hit, vec3 direction, uvec2 jitter) {
     imageStore(out_emission, ivec2(pixel), vec4(background, 0.0));
     before = cameraProject(previousCamera, previousCamera.origin.xyz + direction, frameSize);
   } else {
-    const HitSurface s = surfaceAt(hit, camera.origin.xyz, direction, jitter);
+    const HitSurface s = surfaceAt(hit, camera.origin.xyz, direction, jitter, roundingFor(pixel));
     out_surface[index] = s.surface;
     imageStore(out_emission, ivec2(pixel), vec4(s.emission, 1.0));
     before = cameraProject(previousCamera, previousPosition(hit, s.position), frameSize);

@@ -113,7 +113,7 @@ TEST(Materials, IorAndSpecular) {
     Tolerance t = c.textured ? kTextured : Tolerance{};
     if (p.traits.f90) {
       t.roughnessStep = 1.0 / 1023;
-      t.f90 = 0.5 / 63;
+      t.f90 = 1.0 / 63;
     }
     showBoth(b.scene, t);
   }
