@@ -7,6 +7,7 @@
 #include <weir/render/mean.h>
 #include <weir/render/render.h>
 #include <weir/trace/acceleration.h>
+#include <weir/image/statistics.h>
 
 #include <filesystem>
 #include <functional>
