@@ -29,7 +29,7 @@ Form quadLight() {
   b.add(quadOf(light, b.material(emitter(kRadiance))));
   return {"quad", b.scene, kLow,
           onFloor(kLow, [=](const Vec& p) { return Vec(kRadiance) * irradiance(p, corners(light)); }, {light}),
-          {allLights(3, 2), restir(6), pathTracer(0, 160)}};
+          {allLights(3, 2), restir(16), pathTracer(0, 160)}};
 }
 
 // A wall above hides what lies beyond its edge x = 0.1: the plane through the receiver and that edge cuts the polygon.
@@ -49,7 +49,7 @@ Form halfOccluded() {
                            irradiance(p, seenPast(corners(light), p, edge, {0, 0, 1}, edge + Vec(1, 0, 0)));
                   },
                   {light, blocker}),
-          {allLights(10, 2), restir(24, 32), pathTracer(0, 400, 32)}};
+          {allLights(10, 2), pathTracer(0, 400, 32)}};
 }
 
 Polygon disc(double radius, double height, int n) {
@@ -77,7 +77,7 @@ Form coaxialDisc() {
   const scene::Camera camera = lookAt({0.1f, 0.8f, 0.3f}, {0, 0, 0}, 30);
   return {"coaxial disc", b.scene, camera,
           onFloor(camera, [=](const Vec& at) { return Vec(kRadiance) * irradiance(at, rim); }),
-          {allLights(1, 1), restir(6), pathTracer(0, 100)}};
+          {allLights(1, 1), restir(16), pathTracer(0, 100)}};
 }
 
 // A convex polyhedron: each face that faces the receiver shows it all of itself, and no other does.
@@ -101,7 +101,7 @@ Form sphereLight() {
                     }
                     return Vec(kRadiance) * sum;
                   }),
-          {allLights(1, 1), restir(12), pathTracer(0, 400)}};
+          {allLights(1, 1), pathTracer(0, 400)}};
 }
 
 // A lamp that stands on its edge lights the floor on both of its sides.
@@ -119,7 +119,7 @@ Form doubleSided() {
                     return Vec(kRadiance) * irradiance(p, corners(light));
                   },
                   {light}),
-          {allLights(3, 2), restir(10), pathTracer(0, 200)}};
+          {allLights(3, 2), pathTracer(0, 200)}};
 }
 
 // Two texels, red and green on the left, green and blue on the right: 0 and 1 are what every device decodes exactly.
@@ -143,7 +143,7 @@ Form texturedEmitter() {
                     return Vec(kRadiance) * Vec(l, l + r, r);
                   },
                   {light}),
-          {allLights(6, 2), restir(40, 32), pathTracer(0, 300, 32)}};
+          {allLights(14, 2), pathTracer(0, 300, 32)}};
 }
 
 }  // namespace

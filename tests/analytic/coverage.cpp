@@ -69,7 +69,7 @@ Form grating() {
                     }
                     return Vec(radiance) * sum;
                   }),
-          {allLights(10, 3), restir(30, 32), pathTracer(0, 500, 32)}};
+          {allLights(10, 3), pathTracer(0, 500, 32)}};
 }
 
 const glm::vec3 kSky(0.7f, 1.1f, 2.3f);
@@ -99,8 +99,7 @@ Form sky(const char* name, bool walled) {
                     return radiance * (kPi - (walled ? std::abs(lambertPolygon(p, kUp, corners)) : 0.0));
                   },
                   inFront),
-          {allLights(walled ? 10 : 6, walled ? 4 : 2), restir(walled ? 30 : 6, walled ? 32 : 16),
-           pathTracer(0, walled ? 300 : 60)}};
+          {allLights(walled ? 10 : 6, walled ? 4 : 2), pathTracer(0, walled ? 300 : 60)}};
 }
 Form openSky() { return sky("constant sky", false); }
 Form halfSky() { return sky("sky and a wall", true); }

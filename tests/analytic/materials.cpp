@@ -62,7 +62,7 @@ Form mirror() {
                   const Vec f0(color);
                   return (f0 + (1.0 - f0) * std::pow(1 - view.y, 5)) * Vec(radiance);
                 }),
-          {allLights(2, 6), restir(20, 16, {"initial.lobeShare=0.9"}), pathTracer(0, 8)}};
+          {allLights(2, 6), pathTracer(0, 8)}};
 }
 
 }  // namespace

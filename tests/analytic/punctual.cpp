@@ -88,7 +88,7 @@ Form colouredPair() {
                                                       return pointOn(p, {0, 1, 0}, Vec(left), Vec(red)) +
                                                              pointOn(p, {0, 1, 0}, Vec(right), Vec(cyan));
                                                     }),
-          {allLights(1, 2), restir(60), pathTracer(0, 60)}};
+          {allLights(1, 2)}};
 }
 
 // Light at 88.3° to 89.2° on a plane whose normal no packed format can say exactly.
@@ -146,7 +146,7 @@ Form manyEqual() {
                                                          }
                                                          return sum;
                                                        }),
-          {allLights(1, 1), restir(30), pathTracer(0, 300)}};
+          {allLights(1, 1), restir(60, 16, {"initial.candidates=128"})}};
 }
 
 }  // namespace

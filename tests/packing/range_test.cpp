@@ -24,7 +24,7 @@ const glm::vec3 kAlbedo(0.771f, 0.413f, 0.217f);
 
 std::vector<float> decades() {
   std::vector<float> all;
-  for (int d = -6; d <= 6; ++d) all.push_back(std::pow(10.0f, static_cast<float>(d)));
+  for (int d = -6; d <= 6; d += 2) all.push_back(std::pow(10.0f, static_cast<float>(d)));
   return all;
 }
 
