@@ -38,12 +38,12 @@ float positionError(vec3 position, vec3 origin, float distance) {
   return (max(largest.x, max(largest.y, largest.z)) + distance) * (8.0 / 8388608.0);
 }
 
-// Roughness in 16 bits; where surfaces differ in F90, roughness in 10 and that in 6.
-uint packRoughness(float roughness, float f90) {
+// Roughness in 16 bits; where surfaces differ in F90, roughness in 10 and that in 6. Rounded by uniform numbers.
+uint packRoughness(float roughness, float f90, vec2 u) {
 #ifdef SCENE_F90
-  return (uint(clamp(roughness, 0.0, 1.0) * 1023.0 + 0.5) << 6u) | uint(clamp(f90, 0.0, 1.0) * 63.0 + 0.5);
+  return (roundBy(clamp(roughness, 0.0, 1.0) * 1023.0, u.x) << 6u) | roundBy(clamp(f90, 0.0, 1.0) * 63.0, u.y);
 #else
-  return uint(clamp(roughness, 0.0, 1.0) * 65535.0 + 0.5);
+  return roundBy(clamp(roughness, 0.0, 1.0) * 65535.0, u.x);
 #endif
 }
 

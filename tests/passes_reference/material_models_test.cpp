@@ -66,12 +66,13 @@ TEST(MaterialModels, IorAndSpecularAgainstTheFormula) {
     forSurfaces(b.scene, low, p, [&](uint32_t i, const OracleSurface& s, glm::dvec3 view, glm::dvec3 color) {
       const glm::dvec3 d = glm::dvec3(at) - s.position;
       const glm::dvec3 expected = bsdfCos(s, view, glm::normalize(d)) * glm::dvec3(kIntensity) / glm::dot(d, d);
-      // F90 has steps of 1/63; the peak of the lobe answers roughness in steps of 1/1023 fourfold.
-      for (int k = 0; k < 3; ++k) EXPECT_NEAR(color[k], expected[k], 0.02 * expected[k] + 1e-6) << "pixel " << i;
+      // F90 has steps of 1/63 and is rounded up or down at random; the peak of the lobe answers roughness in steps of
+      // 1/1023 fourfold. The mean over 24² pixels keeps neither.
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(color[k], expected[k], 0.04 * expected[k] + 1e-6) << "pixel " << i;
       sum += color.x;
       expectedSum += expected.x;
     });
-    EXPECT_NEAR(sum / expectedSum, 1.0, 0.012);
+    EXPECT_NEAR(sum / expectedSum, 1.0, 0.002);
   }
 }
 
