@@ -105,6 +105,8 @@ void addRenderCommand(CLI::App& app) {
                    "Degrees about +Y, counter-clockwise as seen from above")
       ->capture_default_str();
   command->add_option("--camera", o.stage.camera, "Name of a camera of the scene, or ex,ey,ez,tx,ty,tz[,vfov degrees]");
+  command->add_flag("--energy-compensation", o.stage.energyCompensation,
+                    "Add the light that rough specular surfaces reflect more than once");
   addAnimationOptions(*command, o.stage);
   CLI::Option* exposure = command->add_option("--exposure", words->exposure, "EV, for every output.Tonemap");
   command->add_option("--trace", o.trace, "auto, pipeline or query")->capture_default_str();

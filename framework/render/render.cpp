@@ -92,6 +92,7 @@ std::map<std::string, std::string> header(const RenderOptions& o, const Stage& s
   h["weir.scene"] = stage.sceneLabel;
   h["weir.camera"] = stage.cameraLabel;
   h["weir.lights"] = stage.lightsLabel;
+  h["weir.shading"] = stage.shadingLabel;
   h["weir.animation"] = animationOf(o, stage);
   h["weir.graph"] = fmt::format("{} ({})", graph.name, std::filesystem::path(o.graph).filename().string());
   std::string params;

@@ -1,7 +1,7 @@
 // Do the unbiased settings of restir_di agree with the brute-force reference? A program rather than a test: on a GPU it
 // runs long enough to resolve a bias of some hundredths of a percent. Prints a row a setting and, with --json, writes
 // the raw numbers.
-//   agreement --scene scenes/cornell.glb --size 256 --restarts 256 --frames 4
+//   agreement --scene scenes/cornell.glb --size 256 --restarts 256 --frames 4 --modes
 //   agreement --scene scenes/cornell-moving.glb --animate --time 0.3 --time-step 0.1 --size 256 --restarts 256 --frames
 //   6
 #include <fmt/format.h>
@@ -28,6 +28,7 @@ struct Words {
   std::string device, trace = "auto", json, graphs = "graphs";
   uint32_t size = 256, restarts = 64, frames = 4, referenceRestarts = 16, referenceSamples = 4, tile = 16, seed = 0;
   std::vector<std::string> set;
+  bool modes = false;
 };
 
 class Laboratory {
@@ -76,6 +77,51 @@ class Laboratory {
   shader::Compiler compiler_;
 };
 
+struct Setting {
+  std::string name;
+  std::vector<std::string> set, disable;
+};
+
+/// Parameters of one mode for every reuse; `late`: no visibility before the last shadow ray.
+std::vector<std::string> modeSettings(const std::string& mis, bool late) {
+  std::vector<std::string> set;
+  for (const std::string pass : {"temporal", "spatial"}) {
+    set.push_back(pass + ".mis=" + mis);
+    set.push_back(fmt::format("{}.visibilityRays={}", pass, !late));
+  }
+  set.push_back(fmt::format("initial.visibility={}", !late));
+  return set;
+}
+
+/// Pairwise with rays, in four kinds of reuse; with --modes every combination that docs/estimators.md calls unbiased.
+std::vector<Setting> settingsOf(const Words& words) {
+  const std::vector<Setting> reuses = {{"temporal", {}, {"spatial"}}, {"spatial", {}, {"temporal"}}, {"both", {}, {}}};
+  std::vector<Setting> settings = {{"no reuse", {}, {"temporal", "spatial"}}};
+  if (!words.modes) {
+    for (Setting reuse : reuses) {
+      reuse.set = modeSettings("pairwise", false);
+      settings.push_back(reuse);
+    }
+    return settings;
+  }
+  settings.push_back({"no reuse, bsdfRays", {"initial.bsdfRays=1"}, {"temporal", "spatial"}});
+  for (const char* mis : {"z", "balance", "pairwise"}) {
+    for (const bool late : {false, true}) {
+      for (const Setting& reuse : reuses)
+        settings.push_back({fmt::format("{}, {}, {}", mis, late ? "late" : "rays", reuse.name), modeSettings(mis, late),
+                            reuse.disable});
+      Setting twice{
+          fmt::format("{}, {}, both, spatial twice", mis, late ? "late" : "rays"), modeSettings(mis, late), {}};
+      twice.set.emplace_back("spatial.iterations=2");
+      settings.push_back(twice);
+    }
+    Setting rays{fmt::format("{}, rays, both, bsdfRays", mis), modeSettings(mis, false), {}};
+    rays.set.emplace_back("initial.bsdfRays=1");
+    settings.push_back(rays);
+  }
+  return settings;
+}
+
 int run(const Words& words) {
   Laboratory laboratory(words);
   const auto reference =
@@ -83,14 +129,7 @@ int run(const Words& words) {
                      words.referenceRestarts, 1, words.seed + 1000);
   const image::Picture truth = reference.mean(), truthError = reference.standardError();
 
-  const std::vector<std::string> rays = {"temporal.mis=pairwise", "spatial.mis=pairwise",
-                                         "temporal.visibilityRays=true", "spatial.visibilityRays=true"};
-  struct Setting {
-    const char* name;
-    std::vector<std::string> disable;
-  };
-  const Setting settings[] = {
-      {"no reuse", {"temporal", "spatial"}}, {"temporal", {"spatial"}}, {"spatial", {"temporal"}}, {"both", {}}};
+  const std::vector<Setting> settings = settingsOf(words);
   Json j = {{"device", laboratory.device().info().name},
             {"scene", laboratory.stage().sceneLabel},
             {"lights", laboratory.stage().lightsLabel},
@@ -108,19 +147,19 @@ int run(const Words& words) {
   bool passed = true;
   for (const Setting& s : settings) {
     graph::Overrides overrides;
-    overrides.set = rays;
+    overrides.set = s.set;
     overrides.set.insert(overrides.set.end(), words.set.begin(), words.set.end());
     overrides.disable = s.disable;
     const auto measured = laboratory.run("restir_di.json", overrides, words.restarts, words.frames, words.seed);
     const image::TileTest t = image::tileTest(measured.tiles(), truth, &truthError);
     fmt::print(
-        "{:9} worst |t| {:5.2f} of {} tiles (bound {:.2f})  mean bias {:+.4f} % (99 %: {:+.4f} … {:+.4f})  a tile to "
+        "{:32} worst |t| {:5.2f} of {} tiles (bound {:.2f})  mean bias {:+.4f} % (99 %: {:+.4f} … {:+.4f})  a tile to "
         "{:.2f} %  {}\n",
         s.name, t.worstT, t.tiles.size(), t.bound, 100 * t.relativeBias, 100 * t.intervalLow, 100 * t.intervalHigh,
         100 * t.detectable, t.passed ? "agrees" : "DIFFERS");
     const image::TileResult& worst = t.tiles[t.worst];
     if (!t.passed) {
-      fmt::print("          worst tile at {}, {}: {:.6g} ± {:.2g} for {:.6g} ({:+.2f} %)\n", t.grid.left(t.worst),
+      fmt::print("{:32} worst tile at {}, {}: {:.6g} ± {:.2g} for {:.6g} ({:+.2f} %)\n", "", t.grid.left(t.worst),
                  t.grid.top(t.worst), worst.mean, worst.standardError, worst.reference, 100 * worst.relativeBias);
     }
     std::fflush(stdout);
@@ -164,6 +203,7 @@ int main(int argc, char** argv) {
   app.add_option("--device", words.device);
   app.add_option("--trace", words.trace);
   app.add_option("--graphs", words.graphs, "Folder with restir_di.json and all_lights.json");
+  app.add_flag("--modes", words.modes, "Every unbiased combination of MIS weights, visibility and reuse");
   app.add_option("--json", words.json);
   CLI11_PARSE(app, argc, argv);
   try {

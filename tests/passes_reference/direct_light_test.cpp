@@ -32,10 +32,10 @@ Builder still(const scene::Material& floor, const scene::Material& ball, const s
 }
 
 /// `detectable`: see expectSameMean().
-void expectDirectLight(View view, double detectable = 0.25) {
+void expectDirectLight(View view, double detectable = 0.25, const std::string& uniformShare = "0.1") {
   view.look();
   const Frames reference = framesOf(view, "reference.AllLights", {{"samples", "3"}}, 5);
-  const Frames paths = pathFrames(view, {{"maxBounces", "0"}, {"samples", "8"}}, 24);
+  const Frames paths = pathFrames(view, {{"maxBounces", "0"}, {"samples", "8"}, {"uniformShare", uniformShare}}, 24);
   expectSameMean(paths, reference, detectable);
 }
 
@@ -65,6 +65,16 @@ TEST(DirectLight, InGlossyReflections) {
     b.scene.environment = environmentOf(8, 4, sky);
     expectDirectLight(View{b.scene, kAbove});
   }
+}
+
+// Light samples come to the sky, and to either lamp, once in a dozen: a weight that forgets how seldom a light is
+// picked shows.
+TEST(DirectLight, OfASkyAmongOtherLights) {
+  Builder b = still(metal({0.9f, 0.8f, 0.7f}, 0.6f), metal({0.5f, 0.7f, 0.9f}, 0.4f), lambert(glm::vec3(0), {1, 1, 1}));
+  b.scene.environment = environmentOf(8, 4, sky);
+  for (int i = 0; i < 9; ++i)  // below the floor
+    b.scene.lights.push_back({"", scene::LightKind::Point, {1, 1, 1}, {0.1f * static_cast<float>(i), -1, 0}});
+  expectDirectLight(View{b.scene, kAbove}, 0.25, "1");
 }
 
 /// A lamp with a texture whose alpha is a coarse pattern.
