@@ -31,7 +31,7 @@ Form quadLight() {
           b.scene,
           kLow,
           onFloor(kLow, [=](const Vec& p) { return Vec(kRadiance) * irradiance(p, corners(light)); }, {light}),
-          {allLights(3, 2), restir(16), pathTracer(0, 160)}};
+          {allLights(3, 2), restir(16), pathTracer(0, 240)}};
 }
 
 // A wall above hides what lies beyond its edge x = 0.1: the plane through the receiver and that edge cuts the polygon.
@@ -131,7 +131,7 @@ Form doubleSided() {
                     return Vec(kRadiance) * irradiance(p, corners(light));
                   },
                   {light}),
-          {allLights(3, 2), pathTracer(0, 200)}};
+          {allLights(3, 2), pathTracer(0, 500)}};
 }
 
 // Two texels, red and green on the left, green and blue on the right: 0 and 1 are what every device decodes exactly.
