@@ -129,6 +129,7 @@ struct PreparedScene {
   std::vector<PreparedInstance> instances;  ///< never empty when there are triangles
   std::vector<PackedMaterial> materials;    ///< the last one is glTF's default material
   std::vector<PackedSpecular> speculars;    ///< beside materials; empty unless a specular trait holds
+  std::vector<float> specularAlbedo;        ///< scene/specular_albedo.h; empty without the trait energyCompensation
   std::vector<PreparedTexture> textures;
   std::vector<GpuLight> lights;       ///< those that can emit at all, triangles first
   std::vector<AliasCell> aliasTable;  ///< empty when there are no lights

@@ -139,6 +139,7 @@ Surface surfaceFrom(HitSurface hit, vec3 direction) {
   s.alpha = max(roughness * roughness, kSmallestAlpha);
   s.distance = hit.distance;
   s.error = hit.error;
+  finishSurface(s);
   return s;
 }
 

@@ -76,6 +76,27 @@ TEST(MaterialModels, IorAndSpecularAgainstTheFormula) {
   }
 }
 
+// The extension gives c_diff = diffuse (1 - max F0) and F0; appendix B's 1 - F is then a colour. At grazing angles,
+// where F counts, and with a colour that would show the largest channel taken for all.
+TEST(MaterialModels, ColouredSpecularGlossinessAgainstTheFormula) {
+  Builder b = floorOf({0.8f, 0.5f, 0.2f}, 0, 0.5f);
+  scene::Material& m = b.scene.materials[0];
+  m.model = scene::MaterialModel::SpecularGlossiness;
+  m.specularColor = {0.6f, 0.1f, 0.02f};
+  m.glossiness = 0.3f;
+  const glm::vec3 at(0, 0.4f, -3);
+  const scene::Camera low = lookAt({0, 0.5f, 2.5f}, {0, 0, 0}, 50);
+  b.scene.lights.push_back({"", scene::LightKind::Point, kIntensity, at});
+  const Picture p = render(b.scene, low);
+  const size_t n =
+      forSurfaces(b.scene, low, p, [&](uint32_t i, const OracleSurface& s, glm::dvec3 view, glm::dvec3 color) {
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(s.diffuse[k], 0.4 * m.baseColor[k], 1e-6);
+        const glm::dvec3 d = glm::dvec3(at) - s.position;
+        expectNear(color, bsdfCos(s, view, glm::normalize(d)) * glm::dvec3(kIntensity) / glm::dot(d, d), 0.01, i);
+      });
+  EXPECT_GT(n, 100u);
+}
+
 // Without specular reflection nothing is left but Lambert.
 TEST(MaterialModels, SpecularZeroIsLambert) {
   Builder b = floorOf({0.5f, 0.5f, 0.5f}, 0, 0.5f);

@@ -22,7 +22,7 @@ using Frames = std::vector<image::Picture>;
 struct View {
   scene::Scene scene;
   scene::Camera camera;
-  uint32_t side = 24;
+  uint32_t side = 16;
   std::string clip = {};
   double at = 0.0;
   std::vector<passes::PackedSurface> surface = {};

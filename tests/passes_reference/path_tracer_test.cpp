@@ -72,7 +72,7 @@ TEST(PathTracer, RouletteAndLightSamplingKeepTheMean) {
       SCOPED_TRACE(testing::Message() << sampling << ", roulette from " << start);
       const Frames frames = pathFrames(
           view, {{"maxBounces", "5"}, {"samples", "2"}, {"lightSampling", sampling}, {"rouletteStart", start}}, 24);
-      expectSameMean(frames, seriesPicture(view, 5), nullptr, 0.05);
+      expectSameMean(frames, seriesPicture(view, 5), nullptr, 0.06);
     }
   }
 }
@@ -104,7 +104,7 @@ TEST(PathTracer, DiffuseBallWithinAnEmitter) {
     ball += emits ? 0 : 1;
     for (int k = 0; k < 3; ++k) expected.rgba[4 * i + k] = kEmission[k] * (emits ? 1.0f : kAlbedo[k]);
   }
-  EXPECT_GT(ball, 300u);
+  EXPECT_GT(ball, 120u);
   for (const char* sampling : {"mis", "lights", "bsdf"}) {
     SCOPED_TRACE(sampling);
     const Frames frames = pathFrames(view, {{"maxBounces", "2"}, {"lightSampling", sampling}}, 32);
@@ -150,7 +150,7 @@ TEST(PathTracer, BallWithinATranslucentEmitterUnderTheSky) {
         variance[k] += double{error.rgba[4 * i + k]} * error.rgba[4 * i + k];
       }
     }
-    EXPECT_GT(n, 150);
+    EXPECT_GT(n, 70);
     for (int k = 0; k < 3; ++k) {
       const double expected = double{kAlbedo[k]} * arriving[k];
       EXPECT_LT(std::sqrt(variance[k]) / n, 0.01 * expected);
@@ -160,22 +160,54 @@ TEST(PathTracer, BallWithinATranslucentEmitterUnderTheSky) {
 }
 
 // Mirrors, as smooth as any is told from one: what they show is what is there. Nothing at all is lost between lobe,
-// density and cosine.
+// density and cosine. (Where light samples join in, GGX's tails are left to them, which find their way there once in a
+// while.)
 TEST(PathTracer, MirrorsShowWhatIsThere) {
   const View view = ballInRoom(metal(glm::vec3(1), 0.0f), lambert(glm::vec3(0), kEmission));
   for (const char* sampling : {"mis", "bsdf"}) {
-    const Frames frames = pathFrames(view, {{"maxBounces", "1"}, {"lightSampling", sampling}}, 8);
-    const image::Picture mean = collect(frames).mean();
+    SCOPED_TRACE(sampling);
+    const image::RestartAccumulator all =
+        collect(pathFrames(view, {{"maxBounces", "1"}, {"lightSampling", sampling}}, 16));
+    const image::Picture mean = all.mean(), error = all.standardError();
     size_t ball = 0, off = 0;
+    double sum = 0.0, variance = 0.0;
     for (size_t i = 0; i < view.surface.size(); ++i) {
       if (view.emission[i].x > 0) continue;
       ++ball;
+      sum += mean.rgba[4 * i];
+      variance += double{error.rgba[4 * i]} * error.rgba[4 * i];
       for (int k = 0; k < 3; ++k) off += std::abs(mean.rgba[4 * i + k] / kEmission[k] - 1.0) < 5e-3 ? 0 : 1;
     }
-    EXPECT_GT(ball, 300u);
-    // At the rim the lobe reaches below the faces.
-    EXPECT_LT(off, ball / 20) << sampling;
+    EXPECT_GT(ball, 120u);
+    const double n = static_cast<double>(ball);
+    EXPECT_LT(std::sqrt(variance) / n, 2e-3);
+    // Five standard errors (1 in 10⁶). At the rim the lobe reaches below the faces: two in a thousand.
+    EXPECT_NEAR(sum / n, 1.0, 5 * std::sqrt(variance) / n + 2e-3);
+    if (sampling == std::string("bsdf")) {
+      EXPECT_LT(off, ball / 20);
+    }
   }
+}
+
+// Lobes on the way, small and large lights, several bounces: whoever finds the light, there is as much of it.
+TEST(PathTracer, GlossyRoomsAreOneWhateverFindsTheLight) {
+  Builder b;
+  addRoom(b, b.material(lambert({0.7f, 0.6f, 0.5f})));
+  b.add(quad({-0.5f, 0.99f, -0.7f}, {0.5f, 0.99f, -0.7f}, {0.5f, 0.99f, 0.3f}, {-0.5f, 0.99f, 0.3f},
+             b.material(lambert(glm::vec3(0), {6, 5, 4}))));
+  b.add(sphere(16, 32, b.material(metal({0.9f, 0.8f, 0.6f}, 0.35f))), placed({-0.3f, -0.5f, -0.4f}, 0.45f));
+  scene::Material coat;  // a lobe over what is diffuse
+  coat.baseColor = {0.3f, 0.5f, 0.8f, 1};
+  coat.metallic = 0;
+  coat.roughness = 0.5f;
+  b.add(sphere(16, 32, b.material(coat)), placed({0.5f, -0.6f, -0.2f}, 0.35f));
+  const View view = View{b.scene, kInside}.look();
+  const auto by = [&](const char* sampling) {
+    return pathFrames(view, {{"maxBounces", "3"}, {"samples", "4"}, {"lightSampling", sampling}}, 24);
+  };
+  const Frames both = by("mis");
+  expectSameMean(by("lights"), both, 0.3);
+  expectSameMean(by("bsdf"), both, 0.3);
 }
 
 // They show to the camera, and to nothing else.
@@ -192,7 +224,7 @@ TEST(PathTracer, UnlitSurfacesAreBlackAlongPaths) {
       ball += seen ? 0 : 1;
       for (int k = 0; k < 3; ++k) EXPECT_EQ(frames[0].rgba[4 * i + k], seen ? view.emission[i][k] : 0.0f);
     }
-    EXPECT_GT(ball, 300u);
+    EXPECT_GT(ball, 120u);
   }
 }
 
@@ -220,7 +252,7 @@ TEST(PathTracer, BackEndsAgree) {
     }
     EXPECT_LE(off, a[f].rgba.size() / 100);
   }
-  EXPECT_GT(sum, 100.0);
+  EXPECT_GT(sum, 50.0);
 }
 
 }  // namespace

@@ -101,14 +101,14 @@ TEST(Offset, FarFromTheOrigin) {
 // away moves nothing here.
 TEST(Offset, VerticesOfPathsDoNotShadowThemselves) {
   const scene::Camera camera = lookAt({0.4f, 0.9f, 2.6f}, {0.3f, 0.2f, 0}, 50);
-  for (const float scale : kScales) {
+  for (const float scale : {1e-4f, 1.0f, 1e6f}) {
     SCOPED_TRACE(scale);
-    expectFew(leave(scaled(ball(), scale), moved(camera, scale), "sky", 160, 32, true), 200'000);
+    expectFew(leave(scaled(ball(), scale), moved(camera, scale), "sky", 112, 24, true), 70'000);
   }
   const glm::vec3 far(300, -200, 500);
-  expectFew(leave(shifted(octahedron(), far), moved(camera, 1, far), "sky", 160, 64, true), 200'000);
-  expectFew(leave(octahedron(), lookAt({300, 200, 500}, {0.3f, 0.2f, 0}, 0.2f), "sky", 160, 64, true), 200'000);
-  expectFew(leave(plane(30'000.0f), lookAt({0.2f, 1.7f, 0.5f}, {2, 0.5f, 3}, 70), "sky", 160, 32, true), 200'000);
+  expectFew(leave(shifted(octahedron(), far), moved(camera, 1, far), "sky", 112, 48, true), 70'000);
+  expectFew(leave(octahedron(), lookAt({300, 200, 500}, {0.3f, 0.2f, 0}, 0.2f), "sky", 112, 48, true), 70'000);
+  expectFew(leave(plane(30'000.0f), lookAt({0.2f, 1.7f, 0.5f}, {2, 0.5f, 3}, 70), "sky", 112, 24, true), 70'000);
 }
 
 TEST(Offset, TrianglesMuchLargerThanTheView) {
