@@ -109,7 +109,7 @@ Form sky(const char* name, bool walled) {
           camera,
           [=](const Vec& p) { return radiance * (kPi - (walled ? std::abs(lambertPolygon(p, kUp, corners)) : 0.0)); },
           inFront),
-      {allLights(walled ? 10 : 6, walled ? 4 : 2), pathTracer(0, walled ? 300 : 60)}};
+      walled ? std::vector{allLights(10, 4)} : std::vector{allLights(6, 2), pathTracer(0, 240)}};
 }
 Form openSky() {
   return sky("constant sky", false);
