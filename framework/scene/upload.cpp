@@ -165,10 +165,9 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
   const VkDescriptorBufferInfo frame{frameConstants.handle(), 0, slotBytes};
   constexpr uint32_t kOwn = kBindRays - kBindPositions + 1;
   std::array<VkBuffer, kOwn + 3> handles = {
-      positions_.handle(),      vertices_.handle(), triangles_.handle(), instances_.handle(),
-      materials_.handle(),      lights_.handle(),   alias_.handle(),     lightOfTriangle_.handle(),
-      colors_.handle(),         uvs1_.handle(),     speculars_.handle(), textureUses_.handle(),
-      specularAlbedo_.handle(), rayCounter.handle()};
+      positions_.handle(), vertices_.handle(),    triangles_.handle(),       instances_.handle(), materials_.handle(),
+      lights_.handle(),    alias_.handle(),       lightOfTriangle_.handle(), colors_.handle(),    uvs1_.handle(),
+      speculars_.handle(), textureUses_.handle(), specularAlbedo_.handle(),  rayCounter.handle()};
   VkAccelerationStructureKHR top = acceleration_.top();
   uint32_t count = kOwn;
   if (moving != nullptr) {

@@ -102,9 +102,7 @@ Form sky(const char* name, bool walled) {
   std::vector<Panel> inFront;
   if (walled) inFront = {wall};
   return {
-      name,
-      b.scene,
-      camera,
+      name, b.scene, camera,
       onFloor(
           camera,
           [=](const Vec& p) { return radiance * (kPi - (walled ? std::abs(lambertPolygon(p, kUp, corners)) : 0.0)); },

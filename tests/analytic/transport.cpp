@@ -118,8 +118,9 @@ Form furnace() {
   return {"white furnace", b.scene, camera, [](const Vec&) { return Vec(1, 2, 0.5); }, {pathTracer(1024, 300)}};
 }
 
-// The sun on a large square; what that scatters lights a small ceiling, by Lambert's formula for the square less its formula for
-// the ceiling's shadow on it, a parallelogram that the sun's direction says. The ceiling sees no sun itself.
+// The sun on a large square; what that scatters lights a small ceiling, by Lambert's formula for the square less its
+// formula for the ceiling's shadow on it, a parallelogram that the sun's direction says. The ceiling sees no sun
+// itself.
 Form oneBounce() {
   Builder b;
   const glm::vec3 albedo(0.6f, 0.4f, 0.2f), lux(5, 6, 7), way = glm::normalize(glm::vec3(-1, -1, 0));
