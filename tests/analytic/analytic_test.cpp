@@ -1,10 +1,10 @@
-// Closed forms through the whole pipeline: G-buffer and estimator, restarts with independent seeds, the mean over the pixels where
-// the form holds against the form's own mean over the same pixels' centres, in each channel.
+// Closed forms through the whole pipeline: G-buffer and estimator, restarts with independent seeds, the mean over the
+// pixels where the form holds against the form's own mean over the same pixels' centres, in each channel.
 //
-// Resolved to 0.1 %: half of the 99 % interval of Student's t over 24 restarts, with what single precision may add, is at
-// most 0.1 % of the closed form. Held: the form lies within the interval that holds for all comparisons of the suite
-// together with probability 99 % (Šidák): a new seed raises one false alarm in a hundred runs of the whole suite. Power: the
-// same data refuse the form times 1.003 and times 0.997.
+// Resolved to 0.1 %: half of the 99 % interval of Student's t over 24 restarts, with what single precision may add, is
+// at most 0.1 % of the closed form. Held: the form lies within the interval that holds for all comparisons of the suite
+// together with probability 99 % (Šidák): a new seed raises one false alarm in a hundred runs of the whole suite.
+// Power: the same data refuse the form times 1.003 and times 0.997.
 #include <gtest/gtest.h>
 #include <weir/image/student.h>
 
@@ -111,8 +111,8 @@ TEST_P(ClosedForm, IsWhatThePipelineShows) {
       const double expected = region.mean[c], error = moments[c].standardError(count) / expected;
       const double half = single * error + kSinglePrecision, bound = together * error + kSinglePrecision;
       const auto off = [&](double scale) { return std::abs(moments[c].mean / (scale * expected) - 1); };
-      std::cout << std::setprecision(6) << form.name << " | " << nameOf(plan) << " | " << "RGB"[c] << " | "
-                << moments[c].mean << " | " << expected << " | " << std::setprecision(3)
+      std::cout << std::setprecision(6) << form.name << " | " << nameOf(plan) << " | "
+                << "RGB"[c] << " | " << moments[c].mean << " | " << expected << " | " << std::setprecision(3)
                 << 100 * (moments[c].mean / expected - 1) << " % | ± " << 100 * half << " %\n";
       EXPECT_LE(half, kResolution);
       EXPECT_LE(off(1), bound);
@@ -143,7 +143,8 @@ TEST(LambertPolygon, HasItsLimits) {
   EXPECT_NEAR(std::abs(lambertPolygon({0, 0, 0}, {0, 1, 0}, disc)) / (kPi * 0.25 / 1.25), 1, 1e-5);
   // A hemisphere's worth: a huge polygon overhead gives π.
   const double w = 1e6;
-  EXPECT_NEAR(std::abs(lambertPolygon({0, 0, 0}, {0, 1, 0}, {{-w, 1, -w}, {w, 1, -w}, {w, 1, w}, {-w, 1, w}})), kPi, 1e-5);
+  EXPECT_NEAR(std::abs(lambertPolygon({0, 0, 0}, {0, 1, 0}, {{-w, 1, -w}, {w, 1, -w}, {w, 1, w}, {-w, 1, w}})), kPi,
+              1e-5);
   // Cut in two it is the sum of its parts.
   const Polygon whole{{-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1}};
   const Vec at(0.3, 0, 0.2), edge(0.1, 0.5, 0);

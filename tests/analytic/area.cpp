@@ -27,9 +27,11 @@ Form quadLight() {
   Builder b = floorScene();
   const Panel light = lamp(0.4, 0.3);
   b.add(quadOf(light, b.material(emitter(kRadiance))));
-  return {"quad", b.scene, kLow,
+  return {"quad",
+          b.scene,
+          kLow,
           onFloor(kLow, [=](const Vec& p) { return Vec(kRadiance) * irradiance(p, corners(light)); }, {light}),
-          {allLights(3, 2), restir(16), pathTracer(0, 160)}};
+          {allLights(3, 2), restir(16), pathTracer(0, 240)}};
 }
 
 // A wall above hides what lies beyond its edge x = 0.1: the plane through the receiver and that edge cuts the polygon.
@@ -42,14 +44,17 @@ Form halfOccluded() {
   b.add(quadOf(blocker, b.material(black)));
   const Vec edge = blocker.origin + blocker.u;
   const scene::Camera camera = lookAt({0.3f, 0.4f, 1.1f}, {0.15f, 0, 0}, 24);
-  return {"half-occluded quad", b.scene, camera,
-          onFloor(camera,
-                  [=](const Vec& p) {
-                    return Vec(kRadiance) *
-                           irradiance(p, seenPast(corners(light), p, edge, {0, 0, 1}, edge + Vec(1, 0, 0)));
-                  },
-                  {light, blocker}),
-          {allLights(10, 2), pathTracer(0, 400, 32)}};
+  return {
+      "half-occluded quad",
+      b.scene,
+      camera,
+      onFloor(
+          camera,
+          [=](const Vec& p) {
+            return Vec(kRadiance) * irradiance(p, seenPast(corners(light), p, edge, {0, 0, 1}, edge + Vec(1, 0, 0)));
+          },
+          {light, blocker}),
+      {allLights(10, 2)}};
 }
 
 Polygon disc(double radius, double height, int n) {
@@ -61,7 +66,8 @@ Polygon disc(double radius, double height, int n) {
   return result;
 }
 
-// Seen from its axis, where π L r²/(r² + h²) is the limit of ever more corners (checked without a device), and around it.
+// Seen from its axis, where π L r²/(r² + h²) is the limit of ever more corners (checked without a device), and around
+// it.
 Form coaxialDisc() {
   Builder b = floorScene();
   const Polygon rim = disc(0.5, 1, 24);
@@ -75,9 +81,11 @@ Form coaxialDisc() {
   p.material = b.material(emitter(kRadiance));
   b.add(p);
   const scene::Camera camera = lookAt({0.1f, 0.8f, 0.3f}, {0, 0, 0}, 30);
-  return {"coaxial disc", b.scene, camera,
+  return {"coaxial disc",
+          b.scene,
+          camera,
           onFloor(camera, [=](const Vec& at) { return Vec(kRadiance) * irradiance(at, rim); }),
-          {allLights(1, 1), restir(16), pathTracer(0, 100)}};
+          {allLights(1, 1), restir(16), pathTracer(0, 400)}};
 }
 
 // A convex polyhedron: each face that faces the receiver shows it all of itself, and no other does.
@@ -92,7 +100,9 @@ Form sphereLight() {
   }
   b.add(ball);
   const scene::Camera camera = lookAt({0.3f, 0.7f, 1.3f}, {0, 0, 0}, 30);
-  return {"tessellated sphere", b.scene, camera,
+  return {"tessellated sphere",
+          b.scene,
+          camera,
           onFloor(camera,
                   [=](const Vec& p) {
                     double sum = 0;
@@ -101,7 +111,7 @@ Form sphereLight() {
                     }
                     return Vec(kRadiance) * sum;
                   }),
-          {allLights(1, 1), pathTracer(0, 400)}};
+          {allLights(1, 1)}};
 }
 
 // A lamp that stands on its edge lights the floor on both of its sides.
@@ -112,14 +122,16 @@ Form doubleSided() {
   m.doubleSided = true;
   b.add(quadOf(light, b.material(m)));
   const scene::Camera camera = lookAt({0.1f, 2.2f, 0.2f}, {0, 0, 0}, 38);
-  return {"double-sided emitter", b.scene, camera,
+  return {"double-sided emitter",
+          b.scene,
+          camera,
           onFloor(camera,
                   [=](const Vec& p) -> std::optional<Vec> {
                     if (std::abs(p.x) < 0.1) return std::nullopt;
                     return Vec(kRadiance) * irradiance(p, corners(light));
                   },
                   {light}),
-          {allLights(3, 2), pathTracer(0, 200)}};
+          {allLights(3, 2), pathTracer(0, 500)}};
 }
 
 // Two texels, red and green on the left, green and blue on the right: 0 and 1 are what every device decodes exactly.
@@ -136,14 +148,16 @@ Form texturedEmitter() {
   right.u *= 0.5;
   right.origin += right.u;
   const scene::Camera camera = lookAt({0.1f, 0.7f, 1.2f}, {0, 0, 0}, 30);
-  return {"textured emitter", b.scene, camera,
+  return {"textured emitter",
+          b.scene,
+          camera,
           onFloor(camera,
                   [=](const Vec& p) {
                     const double l = irradiance(p, corners(left)), r = irradiance(p, corners(right));
                     return Vec(kRadiance) * Vec(l, l + r, r);
                   },
                   {light}),
-          {allLights(14, 2), pathTracer(0, 300, 32)}};
+          {allLights(14, 2)}};
 }
 
 }  // namespace

@@ -28,7 +28,9 @@ Form panes(const char* name, const std::vector<float>& alphas) {
     through *= 1 - double(alphas[i]);
   }
   const scene::Camera camera = lookAt({0.3f, 0.9f, 1.3f}, {0, 0, 0}, 40);
-  return {name, b.scene, camera,
+  return {name,
+          b.scene,
+          camera,
           onFloor(camera,
                   [=](const Vec& p) {
                     const Vec d = Vec(at) - p;
@@ -37,11 +39,15 @@ Form panes(const char* name, const std::vector<float>& alphas) {
           // restir_di draws no coins for shadow rays either: a reservoir carries the transmittance.
           {allLights(1, 2), restir(2), pathTracer(0, 2)}};
 }
-Form onePane() { return panes("one pane", {0.25f}); }
-Form twoPanes() { return panes("two panes", {0.3f, 0.5f}); }
+Form onePane() {
+  return panes("one pane", {0.25f});
+}
+Form twoPanes() {
+  return panes("two panes", {0.3f, 0.5f});
+}
 
-// A grating of eight bars and eight slits of equal width before a quad light. Each slit shows what of the light lies between
-// the planes through the receiver and its two edges.
+// A grating of eight bars and eight slits of equal width before a quad light. Each slit shows what of the light lies
+// between the planes through the receiver and its two edges.
 Form grating() {
   Builder b = floorScene();
   const Panel light{{-0.4f, 1, -0.3f}, {2 * double(0.4f), 0, 0}, {0, 0, 2 * double(0.3f)}};
@@ -57,7 +63,9 @@ Form grating() {
   b.add(quadOf(grid, b.material(mask)));
   const scene::Camera camera = lookAt({0.1f, 0.6f, 0.9f}, {0, 0, 0}, 28);
   const Polygon corners{light.origin, light.origin + light.u, light.origin + light.u + light.v, light.origin + light.v};
-  return {"mask grating", b.scene, camera,
+  return {"mask grating",
+          b.scene,
+          camera,
           onFloor(camera,
                   [=](const Vec& p) {
                     double sum = 0;
@@ -69,7 +77,7 @@ Form grating() {
                     }
                     return Vec(radiance) * sum;
                   }),
-          {allLights(10, 3), pathTracer(0, 500, 32)}};
+          {allLights(10, 3)}};
 }
 
 const glm::vec3 kSky(0.7f, 1.1f, 2.3f);
@@ -93,16 +101,20 @@ Form sky(const char* name, bool walled) {
   const Polygon corners{wall.origin, wall.origin + wall.u, wall.origin + wall.u + wall.v, wall.origin + wall.v};
   std::vector<Panel> inFront;
   if (walled) inFront = {wall};
-  return {name, b.scene, camera,
-          onFloor(camera,
-                  [=](const Vec& p) {
-                    return radiance * (kPi - (walled ? std::abs(lambertPolygon(p, kUp, corners)) : 0.0));
-                  },
-                  inFront),
-          {allLights(walled ? 10 : 6, walled ? 4 : 2), pathTracer(0, walled ? 300 : 60)}};
+  return {
+      name, b.scene, camera,
+      onFloor(
+          camera,
+          [=](const Vec& p) { return radiance * (kPi - (walled ? std::abs(lambertPolygon(p, kUp, corners)) : 0.0)); },
+          inFront),
+      walled ? std::vector{allLights(10, 4)} : std::vector{allLights(6, 2), pathTracer(0, 240)}};
 }
-Form openSky() { return sky("constant sky", false); }
-Form halfSky() { return sky("sky and a wall", true); }
+Form openSky() {
+  return sky("constant sky", false);
+}
+Form halfSky() {
+  return sky("sky and a wall", true);
+}
 
 }  // namespace
 

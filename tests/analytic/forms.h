@@ -1,5 +1,5 @@
-// A closed form: a scene of which the radiance that a pixel's centre shows is known in double precision, written from the literature
-// alone. Shared parts: planes that rays meet, Lambert's formula for polygons, clipping.
+// A closed form: a scene of which the radiance that a pixel's centre shows is known in double precision, written from
+// the literature alone. Shared parts: planes that rays meet, Lambert's formula for polygons, clipping.
 #pragma once
 
 #include <array>
@@ -53,7 +53,8 @@ inline std::optional<Meeting> firstPanel(const std::vector<Panel>& panels, const
     const double t = glm::dot(p.origin - eye, n) / glm::dot(direction, n);
     if (!(t > 0)) continue;
     const Vec d = eye + t * direction - p.origin;
-    const double nn = glm::dot(n, n), a = glm::dot(n, glm::cross(d, p.v)) / nn, b = glm::dot(n, glm::cross(p.u, d)) / nn;
+    const double nn = glm::dot(n, n), a = glm::dot(n, glm::cross(d, p.v)) / nn,
+                 b = glm::dot(n, glm::cross(p.u, d)) / nn;
     const double margin = std::min(std::min(a, 1 - a), std::min(b, 1 - b));
     if (margin < -1e-3) continue;
     edge |= margin < 1e-3;
@@ -65,9 +66,10 @@ inline std::optional<Meeting> firstPanel(const std::vector<Panel>& panels, const
   return first;
 }
 
-/// Irradiance from a uniform polygon of radiance 1 on a plane element, wholly above its horizon: Lambert 1760, "Photometria";
-/// Arvo 1995, "Analytic Methods for Simulated Light Transport", eq. 2.18: 1/2 Σ γ_i n·Γ_i, γ_i the angle that edge i subtends
-/// and Γ_i the unit normal of its plane with the receiver. Negative when the corners run the other way round.
+/// Irradiance from a uniform polygon of radiance 1 on a plane element, wholly above its horizon: Lambert 1760,
+/// "Photometria"; Arvo 1995, "Analytic Methods for Simulated Light Transport", eq. 2.18: 1/2 Σ γ_i n·Γ_i, γ_i the angle
+/// that edge i subtends and Γ_i the unit normal of its plane with the receiver. Negative when the corners run the other
+/// way round.
 inline double lambertPolygon(const Vec& at, const Vec& normal, const Polygon& corners) {
   double sum = 0;
   for (size_t i = 0; i < corners.size(); ++i) {
@@ -97,7 +99,8 @@ inline Polygon seenPast(const Polygon& corners, const Vec& at, const Vec& edge, 
   return clipped(corners, at, inside);
 }
 
-inline Vec bsdfCos(const Vec& diffuse, const Vec& f0, double roughness, const Vec& n, const Vec& view, const Vec& light) {
+inline Vec bsdfCos(const Vec& diffuse, const Vec& f0, double roughness, const Vec& n, const Vec& view,
+                   const Vec& light) {
   // glTF 2.0, appendix B.3: D of GGX, V with Smith's height-correlated G, F of Schlick; the layers mix by F.
   const double a2 = std::pow(roughness, 4), nl = glm::dot(n, light), nv = glm::dot(n, view);
   if (nl <= 0 || nv <= 0) return Vec(0);
@@ -125,8 +128,8 @@ inline scene::Material emitter(const glm::vec3& radiance) {
 }
 
 inline scene::Primitive quadOf(const Panel& p, int material) {
-  return quad(glm::vec3(p.origin), glm::vec3(p.origin + p.u), glm::vec3(p.origin + p.u + p.v), glm::vec3(p.origin + p.v),
-              material);
+  return quad(glm::vec3(p.origin), glm::vec3(p.origin + p.u), glm::vec3(p.origin + p.u + p.v),
+              glm::vec3(p.origin + p.v), material);
 }
 
 inline const glm::vec3 kAlbedo(0.8f, 0.5f, 0.3f);

@@ -23,8 +23,13 @@ Form point() {
   Builder b = floorScene();
   const glm::vec3 at(0.4f, 1.2f, -0.3f);
   b.scene.lights.push_back(pointLight(kIntensity, at));
-  return {"point", b.scene, kAbove,
-          onFloor(kAbove, [=](const Vec& p) { return pointOn(p, {0, 1, 0}, Vec(at), Vec(kIntensity)); }),
+  return {"point",
+          b.scene,
+          kAbove,
+          onFloor(kAbove,
+                  [=](const Vec& p) {
+                    return pointOn(p, {0, 1, 0}, Vec(at), Vec(kIntensity));
+                  }),
           {allLights(1, 2), restir(2), pathTracer(0, 2)}};
 }
 
@@ -38,7 +43,9 @@ Form spot(const char* name, bool falloff) {
   light.outerCone = falloff ? 0.7f : 0.6f;
   b.scene.lights.push_back(light);
   const scene::Camera camera = lookAt({0.1f, 2.4f, 0.9f}, {0.1f, 0, 0.05f}, 30);
-  return {name, b.scene, camera,
+  return {name,
+          b.scene,
+          camera,
           onFloor(camera,
                   [=](const Vec& p) -> std::optional<Vec> {
                     const double cosine = glm::dot(glm::normalize(p - Vec(light.position)), Vec(light.direction));
@@ -49,8 +56,12 @@ Form spot(const char* name, bool falloff) {
                   }),
           {allLights(1, 2), restir(2), pathTracer(0, 2)}};
 }
-Form spotInside() { return spot("spot, inner cone", false); }
-Form spotFalloff() { return spot("spot, falloff", true); }
+Form spotInside() {
+  return spot("spot, inner cone", false);
+}
+Form spotFalloff() {
+  return spot("spot, falloff", true);
+}
 
 // Six panels tilted from 0° to 80° against the light.
 Form directional() {
@@ -61,12 +72,15 @@ Form directional() {
   for (int i = 0; i < 6; ++i) {
     const double tilt = glm::radians(16.0 * i), x = -1.5 + i % 3 * 1.05, y = i / 3 * 1.05 - 1;
     // Rounded to what the scene holds.
-    panels.push_back({Vec(glm::vec3(Vec(x, y, 0))), Vec(glm::vec3(Vec(std::cos(tilt), 0, -std::sin(tilt)))), {0, 1, 0}});
+    panels.push_back(
+        {Vec(glm::vec3(Vec(x, y, 0))), Vec(glm::vec3(Vec(std::cos(tilt), 0, -std::sin(tilt)))), {0, 1, 0}});
     b.add(quadOf(panels.back(), material));
   }
   b.scene.lights.push_back({"", scene::LightKind::Directional, kIntensity, {}, way});
   const scene::Camera camera = lookAt({-1.2f, 0, 4}, {0, 0, 0}, 40);
-  return {"directional, six tilts", b.scene, camera,
+  return {"directional, six tilts",
+          b.scene,
+          camera,
           [=](const Vec& direction) -> std::optional<Vec> {
             const std::optional<Meeting> m = firstPanel(panels, Vec(camera.eye), direction);
             if (!m || m->atEdge) return std::nullopt;
@@ -83,11 +97,13 @@ Form colouredPair() {
   const glm::vec3 left(-0.8f, 0.9f, 0), right(0.9f, 1.1f, 0.1f), red(4, 0.1f, 0), cyan(0, 1.5f, 3);
   b.scene.lights.push_back(pointLight(red, left));
   b.scene.lights.push_back(pointLight(cyan, right));
-  return {"coloured pair", b.scene, kAbove, onFloor(kAbove,
-                                                    [=](const Vec& p) {
-                                                      return pointOn(p, {0, 1, 0}, Vec(left), Vec(red)) +
-                                                             pointOn(p, {0, 1, 0}, Vec(right), Vec(cyan));
-                                                    }),
+  return {"coloured pair",
+          b.scene,
+          kAbove,
+          onFloor(kAbove,
+                  [=](const Vec& p) {
+                    return pointOn(p, {0, 1, 0}, Vec(left), Vec(red)) + pointOn(p, {0, 1, 0}, Vec(right), Vec(cyan));
+                  }),
           {allLights(1, 2)}};
 }
 
@@ -102,7 +118,9 @@ Form grazing() {
   const Vec light = exact(20.0 * x + 0.4 * n), normal = panel.normal();
   b.scene.lights.push_back(pointLight(glm::vec3(4e4f, 3e4f, 2e4f), glm::vec3(light)));
   const scene::Camera camera = lookAt(glm::vec3(3.0 * n + 0.3 * x), {0, 0, 0}, 25);
-  return {"grazing", b.scene, camera,
+  return {"grazing",
+          b.scene,
+          camera,
           [=](const Vec& direction) -> std::optional<Vec> {
             const std::optional<Meeting> m = firstPanel({panel}, Vec(camera.eye), direction);
             if (!m || m->atEdge) return std::nullopt;
@@ -118,14 +136,17 @@ Form farAway() {
   b.scene.lights.push_back(pointLight(intensity, at));
   const Vec away(at);
   const double d2 = glm::dot(away, away);
-  return {"far away", b.scene, kAbove,
-          onFloor(kAbove, [=](const Vec& p) -> std::optional<Vec> {
-            const Vec exact = pointOn(p, {0, 1, 0}, away, Vec(intensity));
-            const Vec limit = Vec(intensity) / d2 * (away.y / std::sqrt(d2));
-            // The limit itself is off by 1/d: 1e-4 here.
-            if (glm::length(exact - limit) > 5e-4 * glm::length(limit)) return Vec(NAN);
-            return exact;
-          }),
+  return {"far away",
+          b.scene,
+          kAbove,
+          onFloor(kAbove,
+                  [=](const Vec& p) -> std::optional<Vec> {
+                    const Vec exact = pointOn(p, {0, 1, 0}, away, Vec(intensity));
+                    const Vec limit = Vec(intensity) / d2 * (away.y / std::sqrt(d2));
+                    // The limit itself is off by 1/d: 1e-4 here.
+                    if (glm::length(exact - limit) > 5e-4 * glm::length(limit)) return Vec(NAN);
+                    return exact;
+                  }),
           {allLights(1, 2), restir(2), pathTracer(0, 2)}};
 }
 
@@ -138,14 +159,17 @@ Form manyEqual() {
     places.emplace_back(at);
     b.scene.lights.push_back(pointLight(glm::vec3(0.02f, 0.03f, 0.04f), at));
   }
-  return {"256 equal lights", b.scene, kAbove, onFloor(kAbove,
-                                                       [=](const Vec& p) {
-                                                         Vec sum(0);
-                                                         for (const Vec& at : places) {
-                                                           sum += pointOn(p, {0, 1, 0}, at, Vec(0.02, 0.03, 0.04));
-                                                         }
-                                                         return sum;
-                                                       }),
+  return {"256 equal lights",
+          b.scene,
+          kAbove,
+          onFloor(kAbove,
+                  [=](const Vec& p) {
+                    Vec sum(0);
+                    for (const Vec& at : places) {
+                      sum += pointOn(p, {0, 1, 0}, at, Vec(0.02, 0.03, 0.04));
+                    }
+                    return sum;
+                  }),
           {allLights(1, 1), restir(60, 16, {"initial.candidates=128"})}};
 }
 

@@ -1,4 +1,5 @@
-// Light that is scattered more than once: enclosures in which every surface has the same radiosity, and other geometric series.
+// Light that is scattered more than once: enclosures in which every surface has the same radiosity, and other geometric
+// series.
 #include "analytic/forms.h"
 #include "support/environment_oracle.h"
 
@@ -42,7 +43,10 @@ Form closedSphere() {
   }
   b.add(flat);
   const scene::Camera camera = lookAt({0.1f, 0.2f, 0.3f}, {-0.6f, -0.1f, -1}, 70);
-  return {"closed sphere", b.scene, camera, [=](const Vec&) { return Vec(radiance) / (1.0 - Vec(albedo)); },
+  return {"closed sphere",
+          b.scene,
+          camera,
+          [=](const Vec&) { return Vec(radiance) / (1.0 - Vec(albedo)); },
           {pathTracer(64, 100)}};
 }
 
@@ -63,16 +67,20 @@ const scene::Camera kInBox = lookAt({0.3f, 0.2f, 0.5f}, {-0.7f, -0.3f, -1}, 60);
 // Emission, direct light and two bounces more: four terms.
 Form finiteBounces() {
   const glm::vec3 albedo(0.8f, 0.5f, 0.2f), radiance(1, 2, 3);
-  return {"box, two bounces", glowingBox(albedo, radiance), kInBox,
+  return {"box, two bounces",
+          glowingBox(albedo, radiance),
+          kInBox,
           [=](const Vec&) { return series(Vec(radiance), Vec(albedo), 4); },
           {pathTracer(2, 100)}};
 }
 
 Form colouredBox() {
-  const glm::vec3 albedo(0.7f, 0.4f, 0.1f), radiance(1, 2, 3);
-  return {"coloured box", glowingBox(albedo, radiance), kInBox,
+  const glm::vec3 albedo(0.6f, 0.4f, 0.1f), radiance(1, 2, 3);
+  return {"coloured box",
+          glowingBox(albedo, radiance),
+          kInBox,
           [=](const Vec&) { return Vec(radiance) / (1.0 - Vec(albedo)); },
-          {pathTracer(64, 150)}};
+          {pathTracer(64, 250)}};
 }
 
 // A plate that glows and one that doesn't, a metre apart and 2 km wide: what leaves between their rims is below
@@ -85,7 +93,9 @@ Form parallelPlates() {
   b.add(quad({-w, 1, -w}, {w, 1, -w}, {w, 1, w}, {-w, 1, w}, b.material(lambert(upper))));
   const scene::Camera camera = lookAt({0, 0.5f, 0}, {1, 0.48f, 0.2f}, 80);
   const Vec first = Vec(radiance) / (1.0 - Vec(lower) * Vec(upper));
-  return {"parallel plates", b.scene, camera,
+  return {"parallel plates",
+          b.scene,
+          camera,
           [=](const Vec& d) -> std::optional<Vec> {
             if (std::abs(d.y) < 0.05) return std::nullopt;
             return d.y < 0 ? first : Vec(upper) * first;
@@ -93,8 +103,8 @@ Form parallelPlates() {
           {pathTracer(64, 150)}};
 }
 
-// White surfaces that aren't convex, under a white sky: whatever path light takes, it comes from the sky. A corner of three
-// squares; what is left after 1024 bounces is nothing.
+// White surfaces that aren't convex, under a white sky: whatever path light takes, it comes from the sky. A corner of
+// three squares; what is left after 1024 bounces is nothing.
 Form furnace() {
   Builder b;
   scene::Material white = lambert(glm::vec3(1));
@@ -105,29 +115,36 @@ Form furnace() {
   b.add(quad({0, 0, 1}, {0, 0, 0}, {0, 1, 0}, {0, 1, 1}, m));
   b.scene.environment = environmentOf(16, 8, [](uint32_t, uint32_t) { return glm::vec3(1, 2, 0.5f); });
   const scene::Camera camera = lookAt({1.5f, 1.3f, 1.4f}, {0.3f, 0.3f, 0.3f}, 35);
-  return {"white furnace", b.scene, camera, [](const Vec&) { return Vec(1, 2, 0.5); }, {pathTracer(1024, 40)}};
+  return {"white furnace", b.scene, camera, [](const Vec&) { return Vec(1, 2, 0.5); }, {pathTracer(1024, 300)}};
 }
 
-// The sun on a square; what that scatters lights a ceiling, by Lambert's formula. The ceiling sees no sun itself (the light
-// meets it from behind), and its shadow falls beside the square.
+// The sun on a large square; what that scatters lights a small ceiling, by Lambert's formula for the square less its
+// formula for the ceiling's shadow on it, a parallelogram that the sun's direction says. The ceiling sees no sun
+// itself.
 Form oneBounce() {
   Builder b;
   const glm::vec3 albedo(0.6f, 0.4f, 0.2f), lux(5, 6, 7), way = glm::normalize(glm::vec3(-1, -1, 0));
-  const Panel square{{-0.5, 0, 0.5}, {1, 0, 0}, {0, 0, -1}}, ceiling{{-0.5, 1.5, -0.5}, {1, 0, 0}, {0, 0, 1}};
+  const Panel square{{-4, 0, 4}, {8, 0, 0}, {0, 0, -8}}, ceiling{{-0.25, 1, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}};
   b.add(quadOf(square, b.material(lambert(albedo))));
   b.add(quadOf(ceiling, b.material(lambert(kAlbedo))));
   b.scene.lights.push_back({"", scene::LightKind::Directional, lux, {}, way});
-  const scene::Camera camera = lookAt({0.6f, 0.4f, 0.9f}, {0, 1.5f, 0}, 30);
+  const scene::Camera camera = lookAt({0.2f, 0.3f, 0.3f}, {0, 1, 0}, 28);
   const Vec radiosity = Vec(lux) * -double(way.y) * Vec(albedo) / kPi;
   const Polygon corners{square.origin, square.origin + square.u, square.origin + square.u + square.v,
                         square.origin + square.v};
-  return {"one bounce", b.scene, camera,
+  const Vec shift(-1, -1, 0);
+  const Polygon shadow{ceiling.origin + shift, ceiling.origin + shift + ceiling.v,
+                       ceiling.origin + shift + ceiling.u + ceiling.v, ceiling.origin + shift + ceiling.u};
+  return {"one bounce",
+          b.scene,
+          camera,
           [=](const Vec& direction) -> std::optional<Vec> {
             const std::optional<Meeting> m = firstPanel({ceiling, square}, Vec(camera.eye), direction);
             if (!m || m->panel != 0 || m->atEdge) return std::nullopt;
-            return Vec(kAlbedo) / kPi * radiosity * std::abs(lambertPolygon(m->position, {0, -1, 0}, corners));
+            const auto part = [&](const Polygon& p) { return std::abs(lambertPolygon(m->position, {0, -1, 0}, p)); };
+            return Vec(kAlbedo) / kPi * radiosity * (part(corners) - part(shadow));
           },
-          {pathTracer(1, 200, 32)}};
+          {pathTracer(1, 300)}};
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What rounding roughness does to the energy that a surface reflects: the directional albedo of GGX alone (F = 1), in double
-// precision, for what PackedSurface's codes stand for.
+// What rounding roughness does to the energy that a surface reflects: the directional albedo of GGX alone (F = 1), in
+// double precision, for what PackedSurface's codes stand for.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,9 +10,9 @@
 namespace weir::test {
 namespace {
 
-/// ∫ D V cosθ dω (height-correlated Smith) by visible normals: the mean of G2/G1 over Heitz's 2018 mapping of a square, "Sampling
-/// the GGX Distribution of Visible Normals", JCGT 7(4), at 64² midpoints. The same points whatever the roughness, so that
-/// differences are exact to far more digits than values.
+/// ∫ D V cosθ dω (height-correlated Smith) by visible normals: the mean of G2/G1 over Heitz's 2018 mapping of a square,
+/// "Sampling the GGX Distribution of Visible Normals", JCGT 7(4), at 64² midpoints. The same points whatever the
+/// roughness, so that differences are exact to far more digits than values.
 double albedo(double roughness, double cosine) {
   const double a = roughness * roughness, sine = std::sqrt(1 - cosine * cosine);
   const auto lambda = [&](const glm::dvec3& v) {
@@ -23,7 +23,8 @@ double albedo(double roughness, double cosine) {
   constexpr int n = 64;
   double sum = 0;
   for (int i = 0; i < n * n; ++i) {
-    const double r = std::sqrt((i / n + 0.5) / n), phi = 2 * std::numbers::pi * (i % n + 0.5) / n, share = 0.5 * (1 + v.z);
+    const double r = std::sqrt((i / n + 0.5) / n), phi = 2 * std::numbers::pi * (i % n + 0.5) / n,
+                 share = 0.5 * (1 + v.z);
     const double p1 = r * std::cos(phi), p2 = (1 - share) * std::sqrt(1 - p1 * p1) + share * r * std::sin(phi);
     const glm::dvec3 m = p1 * t1 + p2 * t2 + std::sqrt(std::max(0.0, 1 - p1 * p1 - p2 * p2)) * v;
     const glm::dvec3 h = glm::normalize(glm::dvec3(a * m.x, a * m.y, std::max(0.0, m.z)));

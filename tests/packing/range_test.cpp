@@ -1,4 +1,5 @@
-// Radiance from 1e-6 to 1e6 nit through everything that carries it: lights, reservoirs, environments, pictures and files.
+// Radiance from 1e-6 to 1e6 nit through everything that carries it: lights, reservoirs, environments, pictures and
+// files.
 #include <gtest/gtest.h>
 #include <weir/image/image.h>
 #include <weir/scene/environment.h>
@@ -80,7 +81,8 @@ TEST(Range, FromLightsThroughReservoirsToAFile) {
   std::cout << "largest relative error over 1e-6 ... 1e6 nit: " << worst << '\n';
 }
 
-// What emits in the camera's sight, and environments as backgrounds: as stored, to the last bit of a float and of a half.
+// What emits in the camera's sight, and environments as backgrounds: as stored, to the last bit of a float and of a
+// half.
 TEST(Range, OfWhatIsSeenDirectly) {
   const scene::Camera camera = lookAt({0, 0, 1}, {0, 0, 0}, 40);
   const TemporaryFolder folder;
@@ -96,10 +98,12 @@ TEST(Range, OfWhatIsSeenDirectly) {
     open.scene.environment = environmentOf(16, 8, [&](uint32_t, uint32_t) { return kColour * strength; });
     for (const auto& [scene, worst] : {std::pair(&lamp.scene, &emission), {&open.scene, &sky}}) {
       Setting setting(workshop, *scene, camera);
-      setting.run({"graphs/all_lights.json", {"direct.samples=1"}, 1, 1, 3, kSide}, [&, w = worst](const image::Picture& p) {
-        const glm::dvec3 mean = meanThroughFile(p, folder);
-        for (int c = 0; c < 3; ++c) *w = std::max(*w, std::abs(mean[c] / (double(kColour[c]) * double(strength)) - 1));
-      });
+      setting.run({"graphs/all_lights.json", {"direct.samples=1"}, 1, 1, 3, kSide},
+                  [&, w = worst](const image::Picture& p) {
+                    const glm::dvec3 mean = meanThroughFile(p, folder);
+                    for (int c = 0; c < 3; ++c)
+                      *w = std::max(*w, std::abs(mean[c] / (double(kColour[c]) * double(strength)) - 1));
+                  });
     }
   }
   std::cout << "largest relative errors: emission " << emission << ", environment " << sky << '\n';
@@ -107,8 +111,8 @@ TEST(Range, OfWhatIsSeenDirectly) {
   EXPECT_LT(sky, 5e-4);  // 2^-11: half of a half float's step
 }
 
-// Texels of one picture share their unit. What is up to 2^29 darker than the brightest keeps 0.1 %; beyond that it loses at
-// most 2^-39 of the brightest, whose share in the light of the whole is 0.1 % of nothing.
+// Texels of one picture share their unit. What is up to 2^29 darker than the brightest keeps 0.1 %; beyond that it
+// loses at most 2^-39 of the brightest, whose share in the light of the whole is 0.1 % of nothing.
 TEST(Range, OfTexelsBesideABrightOne) {
   constexpr uint32_t kTexels = 512;
   const auto value = [](uint32_t x) { return static_cast<float>(std::pow(10.0, 6.0 - 12.0 * x / (kTexels - 1.0))); };
@@ -123,7 +127,8 @@ TEST(Range, OfTexelsBesideABrightOne) {
     sum += stored.texel(x, 0).r;
     exact += v;
   }
-  std::cout << "largest relative error of texels down to 2^-29: " << worst << ", of their sum " << sum / exact - 1 << '\n';
+  std::cout << "largest relative error of texels down to 2^-29: " << worst << ", of their sum " << sum / exact - 1
+            << '\n';
   EXPECT_LT(worst, kEnergy);
   EXPECT_NEAR(sum / exact, 1, 5e-4);
 }

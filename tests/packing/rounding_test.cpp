@@ -70,8 +70,8 @@ std::vector<Rounded> rounded(const std::vector<Value>& values) {
   return t.output<Rounded>("rounded");
 }
 
-// Uniform numbers on a grid of 4096 leave at most half of its step of the gap between codes: at 0.001 and 10 bits, where
-// the gap is 6 %, less than 1e-5 of the value.
+// Uniform numbers on a grid of 4096 leave at most half of its step of the gap between codes: at 0.001 and 10 bits,
+// where the gap is 6 %, less than 1e-5 of the value.
 TEST(Rounding, KeepsTheMeanOfAlbedo) {
   std::vector<Value> values;
   for (int i = 0; i < 512; ++i) values.push_back({std::pow(10.0f, -3.0f * static_cast<float>(i) / 511.0f)});
@@ -155,7 +155,9 @@ TEST(Rounding, ThroughBothGBuffers) {
     for (const char* type : {"gbuffer.RayTraced", "gbuffer.Raster"}) {
       SCOPED_TRACE(type);
       PassTest t(type);
-      t.size(kSide, kSide).scene(panel(c.color, c.metallic, c.roughness, c.specular)).camera(lookAt({0, 0, 1}, {0, 0, 0}));
+      t.size(kSide, kSide)
+          .scene(panel(c.color, c.metallic, c.roughness, c.specular))
+          .camera(lookAt({0, 0, 1}, {0, 0, 0}));
       const bool f90 = t.prepared().traits.f90;
       EXPECT_EQ(f90, c.specular != 1.0f);
       glm::dvec3 diffuse(0), specular(0);

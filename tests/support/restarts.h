@@ -3,11 +3,11 @@
 
 #include <weir/execute/executor.h>
 #include <weir/graph/compile.h>
+#include <weir/image/statistics.h>
 #include <weir/pass/registry.h>
 #include <weir/render/mean.h>
 #include <weir/render/render.h>
 #include <weir/trace/acceleration.h>
-#include <weir/image/statistics.h>
 
 #include <filesystem>
 #include <functional>
@@ -36,8 +36,8 @@ class Workshop {
 
 /// How often and with what a graph runs.
 struct Plan {
-  std::string graph;              ///< file in the source tree
-  std::vector<std::string> set;   ///< as after --set
+  std::string graph;             ///< file in the source tree
+  std::vector<std::string> set;  ///< as after --set
   uint32_t restarts = 1, frames = 1, seed = 1;
   uint32_t side = 16;  ///< pixels, of a square picture
 };
@@ -55,10 +55,10 @@ class Setting {
   /// Calls use(picture) with the mean over frames of every restart's output "radiance".
   void run(const Plan& plan, const std::function<void(const image::Picture&)>& use) {
     const graph::Overrides overrides{.set = plan.set, .enable = {}, .disable = {}};
-    execute::Executor executor(workshop_.device(), workshop_.compiler(), workshop_.registry(), onDevice_,
-                               graph::compileFile(sourcePath(plan.graph), overrides, workshop_.registry().catalog(),
-                                                  plan.side, plan.side),
-                               {.backend = trace::chooseBackend("auto", workshop_.device())});
+    execute::Executor executor(
+        workshop_.device(), workshop_.compiler(), workshop_.registry(), onDevice_,
+        graph::compileFile(sourcePath(plan.graph), overrides, workshop_.registry().catalog(), plan.side, plan.side),
+        {.backend = trace::chooseBackend("auto", workshop_.device())});
     for (uint32_t r = 0; r < plan.restarts; ++r) {
       executor.resetHistory();
       render::FrameMean mean;
