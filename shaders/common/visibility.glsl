@@ -11,10 +11,11 @@
 // corners that may be far away. Which triangle the ray leaves isn't known here, so that the scene's largest one stands for all.
 float intersectionError() { return sceneLargest * (4.0 / 8388608.0); }
 
-// A ray's start, moved off the surface by its error, to the side that `direction` leaves it.
+// A ray's start, moved off the surface by its error, to the side that `direction` leaves it; and a step back along the ray that found
+// the surface, where nothing is in the way: in the very edge of two walls the normal alone would stay within the other wall's error.
 vec3 offsetOrigin(Surface s, vec3 direction) {
   const float error = s.error + intersectionError();
-  return s.position + s.geometricNormal * (dot(s.geometricNormal, direction) < 0.0 ? -error : error);
+  return s.position + (dot(s.geometricNormal, direction) < 0.0 ? -s.geometricNormal : s.geometricNormal + s.view) * error;
 }
 
 // The segment from the surface to the light's point; either end is moved towards the other by its own error, so that neither
