@@ -1,0 +1,236 @@
+// What the bugs are looked for in. Each is small, lit so that its noise is low, and has what the bugs beside it need to
+// show: depth steps and occluders for reuse between pixels, motion for reuse between frames, gloss and a sky for the
+// mixtures of candidates.
+#include <cmath>
+
+#include "laboratory.h"
+#include "support/device.h"
+#include "support/environment_oracle.h"
+#include "support/small_scenes.h"
+
+namespace weir::test {
+namespace {
+
+scene::Material coloured(const glm::vec3& color, float metallic = 0.0f, float roughness = 1.0f) {
+  scene::Material m;
+  m.baseColor = glm::vec4(color, 1.0f);
+  m.metallic = metallic;
+  m.roughness = roughness;
+  return m;
+}
+
+scene::Material lamp(const glm::vec3& emission, bool doubleSided = false) {
+  scene::Material m = coloured(glm::vec3(0.0f));
+  m.emission = emission;
+  m.doubleSided = doubleSided;
+  return m;
+}
+
+render::Stage staged(scene::Scene scene, const scene::Camera& camera) {
+  render::Stage s;
+  s.scene = std::move(scene);
+  s.prepared = scene::prepareScene(s.scene);
+  s.camera = camera;
+  return s;
+}
+
+void addBlock(Builder& b, const glm::vec3& low, const glm::vec3& high, int material) {
+  const glm::vec3 l = low, h = high;
+  b.add(quad({l.x, l.y, h.z}, {h.x, l.y, h.z}, {h.x, h.y, h.z}, {l.x, h.y, h.z}, material));
+  b.add(quad({h.x, l.y, l.z}, {l.x, l.y, l.z}, {l.x, h.y, l.z}, {h.x, h.y, l.z}, material));
+  b.add(quad({h.x, l.y, h.z}, {h.x, l.y, l.z}, {h.x, h.y, l.z}, {h.x, h.y, h.z}, material));
+  b.add(quad({l.x, l.y, l.z}, {l.x, l.y, h.z}, {l.x, h.y, h.z}, {l.x, h.y, l.z}, material));
+  b.add(quad({l.x, h.y, h.z}, {h.x, h.y, h.z}, {h.x, h.y, l.z}, {l.x, h.y, l.z}, material));
+}
+
+/// A corner of a room with a thin fin and a block before it: depth steps, right angles, shadows that end on flat
+/// ground, a wall that shines. A wide lamp above, a small one low beside the block, a point light.
+Builder room() {
+  Builder b;
+  const int grey = b.material(coloured({0.6f, 0.6f, 0.6f})), red = b.material(coloured({0.7f, 0.15f, 0.1f}));
+  const int shiny = b.material(coloured({0.8f, 0.7f, 0.5f}, 1.0f, 0.4f));
+  b.add(quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, grey));
+  b.add(quad({-2, 0, -2}, {2, 0, -2}, {2, 3, -2}, {-2, 3, -2}, shiny));
+  b.add(quad({-2, 0, 2}, {-2, 0, -2}, {-2, 3, -2}, {-2, 3, 2}, red));
+  addBlock(b, {0.2f, 0.0f, -1.2f}, {1.1f, 0.9f, -0.4f}, grey);
+  addBlock(b, {-0.75f, 0.0f, -0.2f}, {-0.7f, 1.6f, 0.6f}, red);
+  b.add(quad({-1.2f, 2.8f, -1.2f}, {-0.2f, 2.8f, -1.2f}, {-0.2f, 2.8f, -0.4f}, {-1.2f, 2.8f, -0.4f},
+             b.material(lamp({9, 8, 6}))));
+  b.add(quad({1.6f, 0.3f, -0.9f}, {1.6f, 0.3f, -0.6f}, {1.6f, 0.6f, -0.6f}, {1.6f, 0.6f, -0.9f},
+             b.material(lamp({6, 10, 22}, true))));
+  scene::PunctualLight point;
+  point.intensity = {2.0f, 1.6f, 1.2f};
+  point.position = {1.2f, 2.2f, 1.2f};
+  b.scene.lights.push_back(point);
+  return b;
+}
+
+const scene::Camera kIntoRoom = lookAt({0.6f, 1.5f, 3.2f}, {-0.1f, 0.75f, -0.6f}, 48);
+
+render::Stage roomStage() {
+  return staged(room().scene, kIntoRoom);
+}
+
+/// The camera goes sideways, a pixel or more a frame.
+scene::Camera sideways(uint32_t frame) {
+  scene::Camera c = kIntoRoom;
+  c.eye.x += 0.12f * static_cast<float>(frame);
+  return c;
+}
+
+/// Rough and smooth metal under a quad lamp close by, for candidates along the lobe.
+render::Stage glossStage() {
+  Builder b;
+  const int mirror = b.material(coloured({0.9f, 0.85f, 0.8f}, 1.0f, 0.2f));
+  const int plastic = b.material(coloured({0.3f, 0.5f, 0.7f}, 0.0f, 0.3f));
+  b.add(quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, plastic));
+  b.add(quad({-2, 0, -1}, {2, 0, -1}, {2, 2.5f, -1}, {-2, 2.5f, -1}, mirror));
+  b.add(quad({-0.6f, 1.4f, 0.2f}, {0.2f, 1.4f, 0.2f}, {0.2f, 1.1f, 0.9f}, {-0.6f, 1.1f, 0.9f},
+             b.material(lamp({5, 5, 4}, true))));
+  b.add(sphere(12, 18, plastic), glm::mat4(glm::vec4(0.4f, 0, 0, 0), glm::vec4(0, 0.4f, 0, 0), glm::vec4(0, 0, 0.4f, 0),
+                                           glm::vec4(0.8f, 0.4f, -0.2f, 1)));
+  return staged(b.scene, lookAt({0.2f, 1.3f, 3.4f}, {0, 0.8f, -0.4f}, 45));
+}
+
+/// A sky with a bright patch over a floor with a wall, some of it glossy.
+render::Stage skyStage() {
+  Builder b;
+  b.add(quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, b.material(coloured({0.5f, 0.5f, 0.5f}))));
+  b.add(quad({-2, 0, -1}, {0.5f, 0, -1}, {0.5f, 1.5f, -1}, {-2, 1.5f, -1},
+             b.material(coloured({0.8f, 0.6f, 0.3f}, 1.0f, 0.35f))));
+  addBlock(b, {0.4f, 0.0f, -0.5f}, {0.9f, 0.8f, 0.2f}, b.material(coloured({0.2f, 0.6f, 0.3f})));
+  b.scene.environment = environmentOf(
+      16, 8,
+      [](uint32_t x, uint32_t y) {
+        if (x == 10 && y == 2) return glm::vec3(18, 16, 12);
+        return y < 4 ? glm::vec3(0.5f, 0.7f, 1.0f) : glm::vec3(0.2f, 0.15f, 0.1f);
+      },
+      1.0f, 0.3f);
+  return staged(b.scene, lookAt({0.5f, 1.4f, 3.2f}, {0, 0.5f, -0.3f}, 45));
+}
+
+/// Light through a pane that lets half of it through, and past one with holes.
+render::Stage paneStage() {
+  Builder b = room();
+  scene::Material pane = coloured({0.9f, 0.9f, 0.9f});
+  pane.alphaMode = scene::AlphaMode::Blend;
+  pane.baseColor.a = 0.5f;
+  pane.doubleSided = true;
+  b.add(quad({-1.8f, 1.9f, 0.2f}, {0.4f, 1.9f, 0.2f}, {0.4f, 1.9f, -1.6f}, {-1.8f, 1.9f, -1.6f}, b.material(pane)));
+  scene::Material leaf = coloured({0.3f, 0.6f, 0.2f});
+  leaf.alphaMode = scene::AlphaMode::Mask;
+  leaf.doubleSided = true;
+  leaf.baseColorTexture.texture = b.texture(
+      8, 8, [](uint32_t x, uint32_t y) { return glm::u8vec4(255, 255, 255, (x + y) % 2 == 0 ? 255 : 0); },
+      scene::Filter::Nearest);
+  b.add(quad({0.6f, 1.5f, 1.0f}, {1.6f, 1.5f, 1.0f}, {1.6f, 1.5f, 0.2f}, {0.6f, 1.5f, 0.2f}, b.material(leaf)));
+  return staged(b.scene, kIntoRoom);
+}
+
+/// A spot and a windowed point light over the room's geometry, and many small ones of unlike power.
+render::Stage pointsStage() {
+  Builder b = room();
+  for (scene::Material& m : b.scene.materials) m.emission = glm::vec3(0.0f);
+  b.scene.lights.clear();
+  scene::PunctualLight spot;
+  spot.kind = scene::LightKind::Spot;
+  spot.intensity = {14, 12, 10};
+  spot.position = {1.5f, 2.8f, 1.5f};
+  spot.direction = glm::normalize(glm::vec3(-1.2f, -2.0f, -1.5f));
+  spot.innerCone = 0.15f;
+  spot.outerCone = 0.55f;
+  b.scene.lights.push_back(spot);
+  for (uint32_t i = 0; i < 40; ++i) {
+    scene::PunctualLight p;
+    const auto u = [&](uint32_t d) { return static_cast<float>(uniformOf(977 * i + d)); };
+    p.position = {3.4f * u(1) - 1.7f, 0.6f + 2.0f * u(2), 3.0f * u(3) - 1.5f};
+    p.intensity = glm::vec3(u(4), u(5), u(6)) * (i % 8 == 0 ? 1.2f : 0.08f);
+    if (i % 3 == 0) p.range = 2.5f;
+    b.scene.lights.push_back(p);
+  }
+  return staged(b.scene, kIntoRoom);
+}
+
+render::Stage movingStage() {
+  render::StageOptions options;
+  options.scene = sourcePath("scenes/cornell-moving.glb");
+  options.animate = true;
+  options.clip = "everything";
+  options.time = 0.3;
+  options.timeStep = 0.08;
+  return render::makeStage(options, 1.0f);
+}
+
+std::vector<std::string> reuse(const std::string& mis, bool rays, std::vector<std::string> more = {}) {
+  const std::string on = rays ? "true" : "false";
+  std::vector<std::string> set = {"temporal.mis=" + mis,           "spatial.mis=" + mis,
+                                  "temporal.visibilityRays=" + on, "spatial.visibilityRays=" + on,
+                                  "temporal.confidenceCap=4",      "initial.candidates=8"};
+  if (!rays) set.emplace_back("initial.visibility=false");
+  set.insert(set.end(), more.begin(), more.end());
+  return set;
+}
+
+std::vector<Situation> makeSituations() {
+  const std::vector<std::string> near = {"spatial.radius=8"};
+  std::vector<Situation> s;
+  s.push_back({"room-pairwise", "reuse in space and time with rays, pairwise", roomStage, "graphs/restir_di.json",
+               reuse("pairwise", true, near)});
+  s.push_back({"room-balance", "the same, balance heuristic", roomStage, "graphs/restir_di.json",
+               reuse("balance", true, near)});
+  s.push_back({"room-z", "the same, 1/Z, two iterations", roomStage, "graphs/restir_di.json",
+               reuse("z", true, {"spatial.radius=8", "spatial.iterations=2", "spatial.neighbours=2"})});
+  s.push_back({"room-unshadowed", "reuse that looks away from shadows altogether, balance heuristic", roomStage,
+               "graphs/restir_di.json", reuse("balance", false, near)});
+  s.push_back({"room-initial",
+               "candidates alone",
+               roomStage,
+               "graphs/restir_di.json",
+               {"initial.candidates=8"},
+               {"temporal", "spatial"}});
+  s.push_back(
+      {"sliding", "a camera that moves sideways", roomStage, "graphs/restir_di.json", reuse("pairwise", true, near)});
+  s.back().camera = sideways;
+  s.push_back({"moving",
+               "lamp, blocker and skin move, pairwise",
+               movingStage,
+               "graphs/restir_di.json",
+               reuse("pairwise", true, {"temporal.confidenceCap=20"}),
+               {"spatial"}});
+  s.push_back({"moving-z",
+               "the same, 1/Z",
+               movingStage,
+               "graphs/restir_di.json",
+               reuse("z", true, {"temporal.confidenceCap=20"}),
+               {"spatial"}});
+  s.push_back({"gloss",
+               "glossy surfaces near a lamp",
+               glossStage,
+               "graphs/restir_di.json",
+               {"initial.candidates=16"},
+               {"temporal", "spatial"}});
+  s.push_back({"sky",
+               "light from all around",
+               skyStage,
+               "graphs/restir_di.json",
+               {"initial.candidates=8", "initial.bsdfCandidates=4"},
+               {"temporal", "spatial"}});
+  s.push_back({"pane", "shadows of what lets light through", paneStage, "graphs/restir_di.json",
+               reuse("pairwise", true, near)});
+  s.push_back({"points",
+               "spot, window, unlike powers",
+               pointsStage,
+               "graphs/restir_di.json",
+               {"initial.candidates=8", "initial.uniformShare=0.3"},
+               {"temporal", "spatial"}});
+  return s;
+}
+
+}  // namespace
+
+const std::vector<Situation>& situations() {
+  static const std::vector<Situation> all = makeSituations();
+  return all;
+}
+
+}  // namespace weir::test
