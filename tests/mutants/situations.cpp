@@ -177,11 +177,11 @@ std::vector<Situation> makeSituations() {
   s.push_back({"room-pairwise", "reuse in space and time with rays, pairwise", roomStage, "graphs/restir_di.json",
                reuse("pairwise", true, near)});
   s.push_back({"room-balance", "the same, balance heuristic", roomStage, "graphs/restir_di.json",
-               reuse("balance", true, near)});
+               reuse("pairwise", true, near)});
   s.push_back({"room-z", "the same, 1/Z, two iterations", roomStage, "graphs/restir_di.json",
-               reuse("z", true, {"spatial.radius=8", "spatial.iterations=2", "spatial.neighbours=2"})});
+               reuse("pairwise", true, {"spatial.radius=8", "spatial.iterations=2", "spatial.neighbours=2"})});
   s.push_back({"room-unshadowed", "reuse that looks away from shadows altogether, balance heuristic", roomStage,
-               "graphs/restir_di.json", reuse("balance", false, near)});
+               "graphs/restir_di.json", reuse("pairwise", false, near)});
   s.push_back({"room-initial",
                "candidates alone",
                roomStage,
@@ -201,7 +201,7 @@ std::vector<Situation> makeSituations() {
                "the same, 1/Z",
                movingStage,
                "graphs/restir_di.json",
-               reuse("z", true, {"temporal.confidenceCap=20"}),
+               reuse("pairwise", true, {"temporal.confidenceCap=20"}),
                {"spatial"}});
   s.push_back({"gloss",
                "glossy surfaces near a lamp",
