@@ -1,16 +1,24 @@
 #include "common/layouts.h"
 #include "restir_di/restir_di.h"
 
+#include <algorithm>
+#include <cctype>
+#include <string>
+
 namespace weir::passes {
 
 void describeReuse(PassDescription& d) {
   d.param("mis", "pairwise")
-      .oneOf({"biased", "pairwise"})
-      .specialises()
-      .doc("MIS weights: biased (by confidence alone, darkens at edges) or defensive pairwise");
+      .oneOf({"biased", "z", "balance", "pairwise"})
+      .doc(
+          "MIS weights: biased (by confidence alone, darkens at edges), z (by the confidence of those that could have "
+          "found the sample), balance (balance heuristic, cost grows with the square of the neighbours) or defensive "
+          "pairwise; all but biased are unbiased with visibilityRays in every reuse, or with neither those nor "
+          "Initial.visibility");
   d.param("visibilityRays", false)
-      .specialises()
-      .doc("Include visibility in the MIS weights and retest the survivor: unbiased with mis=pairwise");
+      .doc(
+          "Include visibility in the MIS weights and retest the survivor; without, reuse is unbiased only if "
+          "Initial.visibility is off and Initial.bsdfRays 0");
   d.param("depthThreshold", 0.1f).range(0, 10).doc("Greatest difference of distance, relative to the distance");
   d.param("normalThreshold", 25.0f).range(0, 180).unit("degrees").doc("Greatest angle between shading normals");
   d.param("albedoThreshold", 1.0f)
@@ -19,6 +27,9 @@ void describeReuse(PassDescription& d) {
 }
 
 Kernel reuseKernel(PrepareContext& c, const char* file, KernelOptions options) {
+  std::string mis = c.text("mis");
+  std::ranges::transform(mis, mis.begin(), [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
+  options.defines.emplace_back("MIS_" + mis, "1");
   if (!c.boolean("visibilityRays")) return c.kernel(file, options);
   options.defines.emplace_back("VISIBILITY_RAYS", "1");
   return c.rayKernel(file, options);

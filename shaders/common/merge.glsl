@@ -1,46 +1,28 @@
-// Merging reservoirs of other surfaces into a pixel's own: the MIS weights of temporal and spatial reuse.
-//   biased    m_i = c_i / C. Cheapest; darkens where the others' targets vanish.
-//   pairwise  defensive pairwise MIS (Bitterli 2022; Lin et al. 2022, eq. 7.x): each neighbour is paired with the canonical sample,
-//             m_j = (c_j/T) · B p̂_j(x_j) / (c_c p̂_c(x_j) + B p̂_j(x_j)),
-//             m_c = c_c/T + Σ_j (c_j/T) · c_c p̂_c(x_c) / (c_c p̂_c(x_c) + B p̂_j(x_c)),    B = Σ_j c_j, T = B + c_c.
-// With VISIBILITY_RAYS the p̂_j of the weights include the neighbour's visibility. A neighbour whose sample is null or whose target
-// is zero adds nothing and keeps its confidence in every weight; which neighbours take part depends on surfaces alone.
+// Merging reservoirs of other surfaces into a pixel's own: what temporal and spatial reuse share. docs/estimators.md has the derivation.
+// The pass says who its neighbours are; one of the files merge_*.glsl, by a define of the host, gives
+//   Reservoir merge(Surface surface, Reservoir own)
+//   MIS_BIASED    m_i = c_i / C: by confidence alone
+//   MIS_Z         m_i = c_i / Σ c_j over the domains j that contain the sample
+//   MIS_BALANCE   m_i = c_i p̂_i / Σ_j c_j p̂_j
+//   MIS_PAIRWISE  defensive pairwise
+// With VISIBILITY_RAYS the neighbours' targets include their visibility, and what survives is tested at its new pixel. A neighbour whose
+// sample is null or whose target is zero adds nothing and keeps its confidence in every weight; which neighbours take part depends on
+// surfaces alone.
 //
-// With PREVIOUS_DOMAIN the neighbour is a surface of the last frame: its target is evaluated with lights, geometry and shadows as they
-// were then, or energy is lost and gained where something moved. A sample is a place on a light. Its W is per m², and belongs to the
-// light as it was when the sample was drawn: where a triangle's area has changed since, W grows with it, and densities per m² of
+// With PREVIOUS_DOMAIN the neighbours are surfaces of the last frame: their targets are evaluated with lights, geometry and shadows as
+// they were then, or energy is lost and gained where something moved. A sample is a place on a light. Its W is per m², and belongs to
+// the light as it was when the sample was drawn: where a triangle's area has changed since, W grows with it, and densities per m² of
 // the old triangle are brought to those of the new one.
 #ifndef WEIR_MERGE
 #define WEIR_MERGE
 
 #include "reservoir.glsl"
 
-const int kBiased = 0, kPairwise = 1;
-
-struct Merge {
-  Surface surface;     // of the merging pixel
-  Reservoir own;       // the canonical reservoir
-  LightSample ownLight;
-  float ownTarget;     // p̂_c(x_c)
-  float others;        // B
-  float ownMis;        // m_c so far (pairwise)
-  Selection selection;
-};
-
-Merge beginMerge(Surface surface, Reservoir own, float others) {
-  Merge m;
-  m.surface = surface;
-  m.own = own;
-  m.others = others;
-  m.ownTarget = 0.0;
-  if (!isNull(own)) {
-    m.ownLight = evaluateLight(lightOf(own), own.place, surface.position);
-    m.ownTarget = targetFunction(surface, m.ownLight);
-  }
-  m.ownMis = own.confidence / (own.confidence + others);
-  m.selection = noSelection();
-  return m;
-}
+// Defined by the pass. A neighbour's reservoir has the confidence with which it counts here.
+uint neighbourCount();
+Reservoir neighbourReservoir(uint i);
+Surface neighbourSurface(uint i);
+float nextChance();  // uniform in [0, 1), a new one each time
 
 #if defined(PREVIOUS_DOMAIN) && defined(SCENE_ANIMATED)
 LightSample lightThere(uint light, uint place, vec3 position) { return evaluateLight(scenePreviousLights[light], place, position); }
@@ -71,35 +53,24 @@ float neighbourTarget(Surface neighbour, LightSample light, bool seen) {
   return target;
 }
 
-void mergeNeighbour(inout Merge m, Surface neighbour, Reservoir r, float confidence, int mis, float u) {
-  const float total = m.own.confidence + m.others;
-  if (mis == kPairwise && m.ownTarget > 0.0) {
-    const LightSample there = lightThere(lightOf(m.own), m.own.place, neighbour.position);
-    const float own = m.own.confidence * m.ownTarget;
-    const float theirs = m.others * neighbourTarget(neighbour, there, false) * measureThere(there, m.ownLight);
-    m.ownMis += confidence / total * (own / (own + theirs));
-  }
-  if (isNull(r)) return;
-  const LightSample here = evaluateLight(lightOf(r), r.place, m.surface.position);
-  const float target = targetFunction(m.surface, here);
-  if (!(target > 0.0)) return;
-  float weight = confidence / total;
-  if (mis == kPairwise) {
-    const LightSample there = lightThere(lightOf(r), r.place, neighbour.position);
-    const float theirs = m.others * neighbourTarget(neighbour, there, isSeen(r)) * measureThere(there, here);
-    weight *= theirs / (m.own.confidence * target + theirs);
-  }
-  offer(m.selection, lightOf(r), r.place, target, weight * target * weightHere(r, here), false, u);
+// What was chosen, tested at its new pixel where the weights count on that.
+Reservoir finishMerge(Selection selection, Surface surface, float confidence) {
+  Reservoir merged = finish(selection, confidence);
+#ifdef VISIBILITY_RAYS
+  testVisibility(merged, surface);
+#endif
+  return merged;
 }
 
-// Offers the canonical sample last; what survives is retested for visibility by the caller where the weights used it.
-Reservoir endMerge(inout Merge m, int mis, float u) {
-  if (m.ownTarget > 0.0) {
-    const float weight = mis == kPairwise ? m.ownMis : m.own.confidence / (m.own.confidence + m.others);
-    offer(m.selection, lightOf(m.own), m.own.place, m.ownTarget, weight * m.ownTarget * m.own.weight, isSeen(m.own), u);
-  }
-  return finish(m.selection, m.own.confidence + m.others);
-}
+#if defined(MIS_BIASED)
+#include "merge_biased.glsl"
+#elif defined(MIS_Z)
+#include "merge_z.glsl"
+#elif defined(MIS_BALANCE)
+#include "merge_balance.glsl"
+#else
+#include "merge_pairwise.glsl"
+#endif
 
 // Whether two surfaces are alike enough to share samples. Depth is relative to the distance, so that scale doesn't matter.
 bool similar(PackedSurface a, PackedSurface b, float depthThreshold, float cosine, float albedoThreshold) {

@@ -15,6 +15,7 @@ bool isSeen(Reservoir r) { return (r.light & kSeen) != 0u; }
 bool isNull(Reservoir r) { return !(r.weight > 0.0); }
 
 Reservoir emptyReservoir() { return Reservoir(0u, 0u, 0.0, 0.0); }
+Reservoir nullReservoir(float confidence) { return Reservoir(0u, 0u, 0.0, confidence); }
 
 // A reservoir that came from outside: whatever is not a finite, valid sample becomes a null sample, so that one bad value
 // can't spread.
@@ -46,21 +47,22 @@ struct Selection {
 
 Selection noSelection() { return Selection(0u, 0u, 0.0, 0.0, false); }
 
-void offer(inout Selection s, uint light, uint place, float target, float weight, bool seen, float u) {
-  if (!(weight > 0.0) || isinf(weight)) return;
+// Whether it was taken: until another one is, it is what was chosen.
+bool offer(inout Selection s, uint light, uint place, float target, float weight, bool seen, float u) {
+  if (!(weight > 0.0) || isinf(weight)) return false;
   s.sum += weight;
-  if (u * s.sum < weight) {
-    s.light = light;
-    s.place = place;
-    s.target = target;
-    s.seen = seen;
-  }
+  if (!(u * s.sum < weight)) return false;
+  s.light = light;
+  s.place = place;
+  s.target = target;
+  s.seen = seen;
+  return true;
 }
 
 Reservoir finish(Selection s, float confidence) {
-  if (!(s.sum > 0.0)) return Reservoir(0u, 0u, 0.0, confidence);
+  if (!(s.sum > 0.0)) return nullReservoir(confidence);
   const float weight = s.sum / s.target;
-  if (isinf(weight)) return Reservoir(0u, 0u, 0.0, confidence);
+  if (isinf(weight)) return nullReservoir(confidence);
   return Reservoir(s.light | (s.seen ? kSeen : 0u), s.place, weight, confidence);
 }
 

@@ -6,20 +6,22 @@
 const uint kPerPixel = in_reservoirs_count;
 const uint kMostNeighbours = 16u;
 
-void run(uvec2 pixel) {
-  const uint index = pixel.y * frameWidth + pixel.x;
-  const PackedSurface packed = in_surface[index];
-  if (!isSurface(packed)) {
-    for (uint k = 0u; k < kPerPixel; ++k) out_reservoirs[index * kPerPixel + k] = emptyReservoir();
-    return;
-  }
-  const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
-  const float cosine = cos(radians(param_normalThreshold));
-  Random random = randomFor(pixel, launchIndex);
+uint neighbours[kMostNeighbours];  // indices of pixels
+uint found = 0u;
+uint which = 0u;  // of a pixel's samples
+Random random;
 
-  // Who takes part follows from the surfaces alone.
-  uint neighbours[kMostNeighbours];
-  uint found = 0u;
+uint neighbourCount() { return found; }
+Reservoir neighbourReservoir(uint i) { return in_reservoirs[neighbours[i] * kPerPixel + which]; }
+Surface neighbourSurface(uint i) {
+  const uint n = neighbours[i];
+  return unpackSurface(in_surface[n], uvec2(n % frameWidth, n / frameWidth), camera, frameSize);
+}
+float nextChance() { return next1(random); }
+
+// Who takes part follows from the surfaces alone.
+void findNeighbours(uvec2 pixel, PackedSurface packed) {
+  const float cosine = cos(radians(param_normalThreshold));
   for (int i = 0; i < param_neighbours; ++i) {
     const vec2 u = next2(random);
     const float angle = 2.0 * kPi * u.y;
@@ -32,23 +34,20 @@ void run(uvec2 pixel) {
     if (!similar(packed, candidate, param_depthThreshold, cosine, param_albedoThreshold)) continue;
     neighbours[found++] = otherIndex;
   }
+}
 
-  for (uint k = 0u; k < kPerPixel; ++k) {
-    float others = 0.0;
-    for (uint i = 0u; i < found; ++i) others += in_reservoirs[neighbours[i] * kPerPixel + k].confidence;
-    const Reservoir own = in_reservoirs[index * kPerPixel + k];
-    Merge merge = beginMerge(surface, own, others);
-    for (uint i = 0u; i < found; ++i) {
-      const uint n = neighbours[i];
-      const Reservoir theirs = in_reservoirs[n * kPerPixel + k];
-      const Surface there =
-          unpackSurface(in_surface[n], uvec2(n % frameWidth, n / frameWidth), camera, frameSize);
-      mergeNeighbour(merge, there, theirs, theirs.confidence, param_mis, next1(random));
-    }
-    Reservoir merged = endMerge(merge, param_mis, next1(random));
-#ifdef VISIBILITY_RAYS
-    testVisibility(merged, surface);
-#endif
-    out_reservoirs[index * kPerPixel + k] = merged;
+void run(uvec2 pixel) {
+  const uint index = pixel.y * frameWidth + pixel.x;
+  const PackedSurface packed = in_surface[index];
+  if (!isSurface(packed)) {
+    for (uint k = 0u; k < kPerPixel; ++k) out_reservoirs[index * kPerPixel + k] = emptyReservoir();
+    return;
+  }
+  const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
+  random = randomFor(pixel, launchIndex);
+  findNeighbours(pixel, packed);
+  for (which = 0u; which < kPerPixel; ++which) {
+    const uint at = index * kPerPixel + which;
+    out_reservoirs[at] = merge(surface, in_reservoirs[at]);
   }
 }

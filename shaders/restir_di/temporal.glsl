@@ -7,6 +7,19 @@
 
 const uint kPerPixel = in_reservoirs_count;
 
+// The one neighbour: the surface of last frame's pixel, with its history.
+Surface beforeSurface;
+Reservoir history;
+vec4 chances;
+
+uint neighbourCount() { return 1u; }
+Reservoir neighbourReservoir(uint i) { return history; }
+Surface neighbourSurface(uint i) { return beforeSurface; }
+float nextChance() {
+  chances = chances.yzwx;
+  return chances.w;
+}
+
 void run(uvec2 pixel) {
   const uint index = pixel.y * frameWidth + pixel.x;
   const PackedSurface packed = in_surface[index];
@@ -35,19 +48,13 @@ void run(uvec2 pixel) {
     for (uint k = 0u; k < kPerPixel; ++k) out_reservoirs[index * kPerPixel + k] = in_reservoirs[index * kPerPixel + k];
     return;
   }
-  const Surface beforeSurface = unpackSurface(beforePacked, uvec2(before), previousCamera, frameSize);
+  beforeSurface = unpackSurface(beforePacked, uvec2(before), previousCamera, frameSize);
   Random random = randomFor(pixel, 0u);
   for (uint k = 0u; k < kPerPixel; ++k) {
     const Reservoir own = in_reservoirs[index * kPerPixel + k];
-    const Reservoir history = sanitized(in_history[beforeIndex * kPerPixel + k]);
-    const float confidence = min(history.confidence, float(param_confidenceCap) * own.confidence);
-    const vec4 u = next4(random);
-    Merge merge = beginMerge(surface, own, confidence);
-    mergeNeighbour(merge, beforeSurface, history, confidence, param_mis, u.x);
-    Reservoir merged = endMerge(merge, param_mis, u.y);
-#ifdef VISIBILITY_RAYS
-    testVisibility(merged, surface);
-#endif
-    out_reservoirs[index * kPerPixel + k] = merged;
+    history = sanitized(in_history[beforeIndex * kPerPixel + k]);
+    history.confidence = min(history.confidence, float(param_confidenceCap) * own.confidence);
+    chances = next4(random);
+    out_reservoirs[index * kPerPixel + k] = merge(surface, own);
   }
 }

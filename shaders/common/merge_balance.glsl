@@ -1,0 +1,32 @@
+// The balance heuristic of all domains (Talbot et al. 2005): m_i(y) = c_i p̂_i(y) / Σ_j c_j p̂_j(y). Every sample is evaluated at every
+// surface, k² of them; surfaces are unpacked again each time, which is cheaper than to keep them all in registers.
+Reservoir merge(Surface surface, Reservoir own) {
+  const uint count = neighbourCount();
+  float total = 0.0;
+  Selection selection = noSelection();
+  for (uint i = 0u; i <= count; ++i) {
+    const bool isOwn = i == count;
+    Reservoir r = own;
+    if (!isOwn) r = neighbourReservoir(i);
+    const float chance = nextChance();
+    total += r.confidence;
+    if (isNull(r)) continue;
+    const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
+    const float target = targetFunction(surface, here);
+    if (!(target > 0.0)) continue;
+    // Visibility is part of the others' targets, not of this pixel's: hidden here is gone by the test at the end.
+    float sum = own.confidence * target;
+    float itsOwn = sum;
+    for (uint j = 0u; j < count; ++j) {
+      const Surface neighbour = neighbourSurface(j);
+      const LightSample there = lightThere(lightOf(r), r.place, neighbour.position);
+      const float theirs = neighbourReservoir(j).confidence * neighbourTarget(neighbour, there, j == i && isSeen(r)) *
+                           measureThere(there, here);
+      sum += theirs;
+      if (j == i) itsOwn = theirs;
+    }
+    const float weight = isOwn ? r.weight : weightHere(r, here);
+    offer(selection, lightOf(r), r.place, target, itsOwn / sum * target * weight, isOwn && isSeen(r), chance);
+  }
+  return finishMerge(selection, surface, total);
+}

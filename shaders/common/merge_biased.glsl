@@ -1,0 +1,24 @@
+// By confidence alone: m_i = c_i / C (Bitterli et al. 2020, algorithm 4). Cheapest; light is lost where others' targets vanish.
+Reservoir merge(Surface surface, Reservoir own) {
+  const uint count = neighbourCount();
+  float others = 0.0;
+  for (uint i = 0u; i < count; ++i) others += neighbourReservoir(i).confidence;
+  const float total = own.confidence + others;
+  Selection selection = noSelection();
+  for (uint i = 0u; i < count; ++i) {
+    const Reservoir r = neighbourReservoir(i);
+    const float chance = nextChance();
+    if (isNull(r)) continue;
+    const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
+    const float target = targetFunction(surface, here);
+    if (!(target > 0.0)) continue;
+    offer(selection, lightOf(r), r.place, target, r.confidence / total * target * weightHere(r, here), false, chance);
+  }
+  const float chance = nextChance();
+  if (!isNull(own)) {
+    const float target = targetFunction(surface, evaluateLight(lightOf(own), own.place, surface.position));
+    const float weight = own.confidence / total;
+    offer(selection, lightOf(own), own.place, target, weight * target * own.weight, isSeen(own), chance);
+  }
+  return finishMerge(selection, surface, total);
+}

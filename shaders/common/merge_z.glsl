@@ -1,0 +1,45 @@
+// By the confidence of the domains that contain the sample: m_i(y) = c_i / Z(y), Z(y) = Σ c_j over j with p̂_j(y) > 0 (Bitterli et al.
+// 2020, algorithm 6). Only the survivor needs its Z: the choice goes by c_i p̂ W, what was chosen is divided by Z after.
+Reservoir merge(Surface surface, Reservoir own) {
+  const uint count = neighbourCount();
+  float total = 0.0;
+  Selection selection = noSelection();
+  uint from = count;  // whose sample was chosen; `count`: the own one
+  bool seenThere = false;
+  for (uint i = 0u; i < count; ++i) {
+    const Reservoir r = neighbourReservoir(i);
+    const float chance = nextChance();
+    total += r.confidence;
+    if (isNull(r)) continue;
+    const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
+    const float target = targetFunction(surface, here);
+    const float weight = r.confidence * target * weightHere(r, here);
+    if (target > 0.0 && offer(selection, lightOf(r), r.place, target, weight, false, chance)) {
+      from = i;
+      seenThere = isSeen(r);
+    }
+  }
+  total += own.confidence;
+  const float chance = nextChance();
+  if (!isNull(own)) {
+    const float target = targetFunction(surface, evaluateLight(lightOf(own), own.place, surface.position));
+    const float weight = own.confidence * target * own.weight;
+    if (offer(selection, lightOf(own), own.place, target, weight, isSeen(own), chance)) from = count;
+  }
+  Reservoir merged = finishMerge(selection, surface, total);
+  if (isNull(merged)) return merged;
+
+  float z = own.confidence;  // p̂ > 0 here, and seen if that counts
+  for (uint i = 0u; i < count; ++i) {
+    const Surface neighbour = neighbourSurface(i);
+    const LightSample there = lightThere(lightOf(merged), merged.place, neighbour.position);
+    if (neighbourTarget(neighbour, there, i == from && seenThere) > 0.0) {
+      z += neighbourReservoir(i).confidence;
+    } else if (i == from) {
+      // Hidden where it comes from: not of its own domain, whose part of the sum is in the others' weights.
+      return nullReservoir(total);
+    }
+  }
+  merged.weight /= z;
+  return merged;
+}
