@@ -28,7 +28,8 @@ void describeReuse(PassDescription& d) {
 
 Kernel reuseKernel(PrepareContext& c, const char* file, KernelOptions options) {
   std::string mis = c.text("mis");
-  std::ranges::transform(mis, mis.begin(), [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
+  std::ranges::transform(mis, mis.begin(),
+                         [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
   options.defines.emplace_back("MIS_" + mis, "1");
   if (!c.boolean("visibilityRays")) return c.kernel(file, options);
   options.defines.emplace_back("VISIBILITY_RAYS", "1");

@@ -2,6 +2,7 @@
 #ifndef WEIR_VISIBILITY
 #define WEIR_VISIBILITY
 
+#include "mutants.glsl"
 #include "lights.glsl"
 #include "surface.glsl"
 #include "trace.glsl"
@@ -13,7 +14,7 @@ float intersectionError() { return sceneLargest * (4.0 / 8388608.0); }
 
 // A ray's start, moved off the surface by its error, to the side that `direction` leaves it.
 vec3 offsetOrigin(Surface s, vec3 direction) {
-  const float error = s.error + intersectionError();
+  const float error = s.error + intersectionError() + MUTANT(48, 0.01 * s.distance, 0.0);
   return s.position + s.geometricNormal * (dot(s.geometricNormal, direction) < 0.0 ? -error : error);
 }
 
@@ -30,7 +31,7 @@ ShadowSegment shadowSegment(Surface s, LightSample light) {
   r.way = light.target - r.origin;
   const vec3 largest = max(abs(light.target), abs(r.origin));
   const float targetError = max(largest.x, max(largest.y, largest.z)) * (16.0 / 8388608.0) + intersectionError();
-  r.extent = 1.0 - targetError * inversesqrt(dot(r.way, r.way));
+  r.extent = MUTANT(47, 0.95, 1.0) - targetError * inversesqrt(dot(r.way, r.way));
   return r;
 }
 

@@ -103,7 +103,8 @@ Finding Laboratory::examine(const Mutant* mutant, uint32_t seed) {
            situation_.frames, 0, seed},
           prepared, broken ? *broken : *scene_, mutant != nullptr && !mutant->host ? mutant->number : 0);
   // Half of the false alarms for the tiles, half for the whole.
-  const image::TileTest t = image::tileTest(measured.tiles(), truth_, &truthError_, {.alpha = 0.5 * alpha_});
+  const image::TileTest t =
+      image::tileTest(measured.tiles(), truth_, &truthError_, {.alpha = 0.5 * alpha_, .eachColour = true});
   Finding f;
   f.relativeBias = t.relativeBias;
   f.low = t.intervalLow;

@@ -71,6 +71,15 @@ render::Stage roomStage() {
   return staged(room().scene, kIntoRoom);
 }
 
+/// The same with floor and walls of half-smooth plastic and metal.
+render::Stage shinyRoomStage() {
+  Builder b = room();
+  for (scene::Material& m : b.scene.materials)
+    if (m.baseColor.r > 0.0f) m.roughness = 0.45f;
+  b.scene.materials[0].metallic = 0.6f;
+  return staged(b.scene, kIntoRoom);
+}
+
 /// The camera goes sideways, a pixel or more a frame.
 scene::Camera sideways(uint32_t frame) {
   scene::Camera c = kIntoRoom;
@@ -171,58 +180,57 @@ std::vector<std::string> reuse(const std::string& mis, bool rays, std::vector<st
   return set;
 }
 
+constexpr const char* kGraph = "graphs/restir_di.json";
+
+/// Reuse in space and time over the room, with neighbours of every kind.
+Situation roomSituation(const std::string& name, const std::string& about, std::vector<std::string> set) {
+  set.insert(set.end(), {"spatial.radius=8", "spatial.normalThreshold=180", "spatial.depthThreshold=10"});
+  return {name, about, roomStage, kGraph, std::move(set)};
+}
+
+Situation initialSituation(const std::string& name, const std::string& about, render::Stage (*stage)(),
+                           std::vector<std::string> set) {
+  return {name, about, stage, kGraph, std::move(set), {"temporal", "spatial"}};
+}
+
+/// A lamp that moves, a blocker that turns, a skin, a morph.
+Situation movingSituation(const std::string& name, const std::string& mis) {
+  return {name,   "lamp, blocker and skin move; " + mis,           movingStage,
+          kGraph, reuse(mis, true, {"temporal.confidenceCap=20"}), {"spatial"}};
+}
+
 std::vector<Situation> makeSituations() {
-  const std::vector<std::string> near = {"spatial.radius=8"};
   std::vector<Situation> s;
-  s.push_back({"room-pairwise", "reuse in space and time with rays, pairwise", roomStage, "graphs/restir_di.json",
-               reuse("pairwise", true, near)});
-  s.push_back({"room-balance", "the same, balance heuristic", roomStage, "graphs/restir_di.json",
-               reuse("pairwise", true, near)});
-  s.push_back({"room-z", "the same, 1/Z, two iterations", roomStage, "graphs/restir_di.json",
-               reuse("pairwise", true, {"spatial.radius=8", "spatial.iterations=2", "spatial.neighbours=2"})});
-  s.push_back({"room-unshadowed", "reuse that looks away from shadows altogether, balance heuristic", roomStage,
-               "graphs/restir_di.json", reuse("pairwise", false, near)});
-  s.push_back({"room-initial",
-               "candidates alone",
-               roomStage,
-               "graphs/restir_di.json",
-               {"initial.candidates=8"},
-               {"temporal", "spatial"}});
-  s.push_back(
-      {"sliding", "a camera that moves sideways", roomStage, "graphs/restir_di.json", reuse("pairwise", true, near)});
+  s.push_back(roomSituation("room-pairwise", "reuse in space and time with rays, pairwise", reuse("pairwise", true)));
+  s.push_back(roomSituation("room-balance", "the same, balance heuristic", reuse("balance", true)));
+  s.push_back(roomSituation("room-z", "the same, 1/Z, two iterations",
+                            reuse("z", true, {"spatial.iterations=2", "spatial.neighbours=2"})));
+  s.push_back(roomSituation("room-z-untested", "1/Z, fresh samples without a shadow ray",
+                            reuse("z", true, {"initial.visibility=false"})));
+  s.push_back(roomSituation("room-unshadowed", "reuse that looks away from shadows, balance heuristic",
+                            reuse("balance", false)));
+  s.push_back(roomSituation("room-temporal", "reuse in time alone, pairwise", reuse("pairwise", true)));
+  s.back().disable = {"spatial"};
+  s.back().frames = 6;
+  s.push_back(roomSituation("room-gloss", "much of the room shines, balance heuristic", reuse("balance", true)));
+  s.back().stage = shinyRoomStage;
+  s.push_back(roomSituation("shiny-pairwise", "the same, pairwise", reuse("pairwise", true)));
+  s.back().stage = shinyRoomStage;
+  s.push_back(roomSituation("sliding", "a camera that moves sideways", reuse("pairwise", true)));
   s.back().camera = sideways;
-  s.push_back({"moving",
-               "lamp, blocker and skin move, pairwise",
-               movingStage,
-               "graphs/restir_di.json",
-               reuse("pairwise", true, {"temporal.confidenceCap=20"}),
-               {"spatial"}});
-  s.push_back({"moving-z",
-               "the same, 1/Z",
-               movingStage,
-               "graphs/restir_di.json",
-               reuse("pairwise", true, {"temporal.confidenceCap=20"}),
-               {"spatial"}});
-  s.push_back({"gloss",
-               "glossy surfaces near a lamp",
-               glossStage,
-               "graphs/restir_di.json",
-               {"initial.candidates=16"},
-               {"temporal", "spatial"}});
-  s.push_back({"sky",
-               "light from all around",
-               skyStage,
-               "graphs/restir_di.json",
-               {"initial.candidates=8", "initial.bsdfCandidates=4"},
-               {"temporal", "spatial"}});
-  s.push_back({"pane", "shadows of what lets light through", paneStage, "graphs/restir_di.json",
-               reuse("pairwise", true, near)});
-  s.push_back({"points",
-               "spot, window, unlike powers",
-               pointsStage,
-               "graphs/restir_di.json",
-               {"initial.candidates=8", "initial.uniformShare=0.3"},
-               {"temporal", "spatial"}});
+  s.push_back(movingSituation("moving", "pairwise"));
+  s.push_back(movingSituation("moving-z", "z"));
+  s.push_back(initialSituation("room-initial", "candidates alone", roomStage, {"initial.candidates=16"}));
+  s.push_back(initialSituation("room-area", "candidates alone, points on triangles by area", roomStage,
+                               {"initial.candidates=16", "initial.triangles=area"}));
+  s.push_back(
+      initialSituation("gloss", "candidates on glossy surfaces near a lamp", glossStage, {"initial.candidates=16"}));
+  s.push_back(initialSituation("sky", "candidates from all around", skyStage,
+                               {"initial.candidates=8", "initial.bsdfCandidates=4"}));
+  s.push_back(roomSituation("pane", "shadows of what lets light through", reuse("pairwise", true)));
+  s.back().stage = paneStage;
+  s.push_back(initialSituation("points", "spot, window, unlike powers", pointsStage,
+                               {"initial.candidates=16", "initial.uniformShare=0.3"}));
   return s;
 }
 
