@@ -81,6 +81,7 @@ ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
                  {"delta_lights", prepared.lights.size() > prepared.triangleLights},
                  {"shared_geometry", prepared.ranges.size() > 2},  // the first two are the merged geometry
                  {"textured_lights", t.texturedLights},
+                 {"alpha_lights", t.alphaLights},
                  {"vertex_colors", t.vertexColors},
                  {"uv_sets", t.uvSets},
                  {"uv_transforms", t.uvTransforms},

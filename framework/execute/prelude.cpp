@@ -125,6 +125,11 @@ std::string sceneDeclarations(const SceneParts& parts, uint32_t textures, const 
     s += "#define NEED_SCENE_LIGHTS 1\n#define sceneLightCount frameBlock.lights\n";
     s += buffer(scene::kBindLights, "readonly", "Light", "sceneLights");
     s += buffer(scene::kBindAlias, "readonly", "AliasCell", "sceneAlias");
+    if (traits.triangleLights)
+      s += fmt::format(
+          "layout(set = 0, binding = {}, std430) readonly buffer LitTriangleBlock {{ uint first, count, lights[]; }} "
+          "sceneLitTriangles;\n",
+          uint32_t{scene::kBindLightOfTriangle});
   }
   if (parts.environment) {
     s += fmt::format(R"(struct EnvironmentCell {{ float threshold; uint alias; float spread; }};

@@ -67,12 +67,26 @@ float srgbToLinear(uint8_t code) {
   return table[code];
 }
 
+TexelSums::TexelSums(const Image& image, Wrap wrapS, Wrap wrapT, double most)
+    : width_(image.width), height_(image.height), wrapS_(wrapS), wrapT_(wrapT), scale_(most / kUnit) {}
+
+template <typename Value>
+void TexelSums::fill(const Image& image, const Value& value) {
+  table_.assign(static_cast<size_t>(width_ + 1) * (height_ + 1), 0);
+  for (uint32_t y = 0; y < height_; ++y) {
+    uint64_t row = 0;
+    const uint8_t* texel = image.rgba.data() + static_cast<size_t>(y) * width_ * 4;
+    for (uint32_t x = 0; x < width_; ++x, texel += 4) {
+      const double v = value(texel);
+      if (v > 0.0) row += std::max<uint64_t>(1, static_cast<uint64_t>(std::min(v, kUnit)));
+      table_[static_cast<size_t>(y + 1) * (width_ + 1) + x + 1] = sum(x + 1, y) + row;
+    }
+  }
+}
+
 EmissionMap::EmissionMap(const Image& image, Wrap wrapS, Wrap wrapT, const glm::vec3& factor)
-    : width_(image.width), height_(image.height), wrapS_(wrapS), wrapT_(wrapT) {
-  // 2^32 a texel times 2^28 texels (16384²) stays below 2^64.
-  constexpr double kUnit = 4294967296.0;
+    : TexelSums(image, wrapS, wrapT, luminance(factor)) {
   const double brightest = luminance(factor);
-  scale_ = brightest / kUnit;
   double red[256], green[256], blue[256];
   for (int i = 0; i < 256; ++i) {
     const double linear = srgbToLinear(static_cast<uint8_t>(i)) * kUnit / brightest;
@@ -80,19 +94,22 @@ EmissionMap::EmissionMap(const Image& image, Wrap wrapS, Wrap wrapT, const glm::
     green[i] = 0.7152 * factor.y * linear;
     blue[i] = 0.0722 * factor.z * linear;
   }
-  table_.assign(static_cast<size_t>(width_ + 1) * (height_ + 1), 0);
-  for (uint32_t y = 0; y < height_; ++y) {
-    uint64_t row = 0;
-    const uint8_t* texel = image.rgba.data() + static_cast<size_t>(y) * width_ * 4;
-    for (uint32_t x = 0; x < width_; ++x, texel += 4) {
-      const double value = red[texel[0]] + green[texel[1]] + blue[texel[2]];
-      if (value > 0.0) row += std::max<uint64_t>(1, static_cast<uint64_t>(std::min(value, kUnit)));
-      table_[static_cast<size_t>(y + 1) * (width_ + 1) + x + 1] = sum(x + 1, y) + row;
-    }
-  }
+  fill(image, [&](const uint8_t* texel) { return red[texel[0]] + green[texel[1]] + blue[texel[2]]; });
 }
 
-double EmissionMap::mean(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) const {
+CoverageMap::CoverageMap(const Image& image, Wrap wrapS, Wrap wrapT, float factor, std::optional<float> cutoff)
+    : TexelSums(image, wrapS, wrapT, 1.0) {
+  double coverage[256];
+  for (int i = 0; i < 256; ++i) {
+    const double alpha = static_cast<double>(factor) * i / 255.0;
+    // Devices filter with errors of their own: what just misses the cutoff may pass it there.
+    constexpr double kSlack = 1.0 / 256.0;
+    coverage[i] = kUnit * (cutoff ? (alpha >= *cutoff - kSlack ? 1.0 : 0.0) : std::clamp(alpha, 0.0, 1.0));
+  }
+  fill(image, [&](const uint8_t* texel) { return coverage[texel[3]]; });
+}
+
+double TexelSums::mean(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c) const {
   const glm::vec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
   Piece columns[2], rows[2];
   const int nx = wrapSpan(low.x, high.x, width_, wrapS_, columns), ny = wrapSpan(low.y, high.y, height_, wrapT_, rows);

@@ -3,8 +3,11 @@
 #include <weir/scene/pose.h>
 #include <weir/scene/scene_state.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace weir::scene {
 namespace {
@@ -47,6 +50,60 @@ std::vector<std::vector<Emitter>> emittersByMaterial(const PreparedScene& prepar
   return result;
 }
 
+/// How much of an emitter is there.
+struct Coverage {
+  float everywhere = 1.0f;  ///< one number for all of the triangle, unless it varies
+  double mean = 1.0;        ///< an estimate, but 0 only if no place is covered
+  bool varies = false;
+};
+
+/// Coverage of one material's triangles; as triangleCoverage() in shaders/common/scene.glsl.
+class MaterialCoverage {
+ public:
+  MaterialCoverage(const Scene& scene, const PreparedScene& prepared, const PackedMaterial& material)
+      : prepared_(prepared), material_(material), alpha_((material.flags & (kMaterialMask | kMaterialBlend)) != 0) {
+    if (!alpha_ || material.baseColorTexture < 0) return;
+    texture_ = prepared.textures[material.baseColorTexture];
+    map_.emplace(scene.images[texture_.image], texture_.wrapS, texture_.wrapT, material.baseColor.a,
+                 masked() ? std::optional(material.alphaCutoff) : std::nullopt);
+  }
+
+  Coverage of(const PackedTriangle& triangle) const {
+    if (!alpha_) return {};
+    std::array<float, 3> corner{1.0f, 1.0f, 1.0f};
+    if (!prepared_.colors.empty())
+      for (int k = 0; k < 3; ++k) corner[k] = static_cast<float>(prepared_.colors[triangle.v[k]].ba >> 16) / 65535.0f;
+    if (!map_ && corner[0] == corner[1] && corner[0] == corner[2]) {
+      const float all = covered(material_.baseColor.a * corner[0]);
+      return {all, all, false};
+    }
+    // A mask's map can't know of the vertices' alpha, which lets it cover less, but never more.
+    Coverage c{1.0f, 1.0, true};
+    if (map_) {
+      const auto uv = [&](int k) { return prepared_.textureUv(texture_, triangle.v[k]); };
+      c.mean = map_->mean(uv(0), uv(1), uv(2));
+    }
+    if (map_ && masked()) return c;
+    double corners = 0.0;
+    for (const float a : corner) corners += map_ ? a : covered(material_.baseColor.a * a);
+    c.mean *= corners / 3.0;
+    return c;
+  }
+
+ private:
+  bool masked() const { return (material_.flags & kMaterialMask) != 0; }
+  float covered(float alpha) const {
+    if (masked()) return alpha >= material_.alphaCutoff ? 1.0f : 0.0f;
+    return std::clamp(alpha, 0.0f, 1.0f);
+  }
+
+  const PreparedScene& prepared_;
+  const PackedMaterial& material_;
+  bool alpha_;
+  PreparedTexture texture_;
+  std::optional<CoverageMap> map_;
+};
+
 void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered& out) {
   const std::vector<std::vector<Emitter>> perMaterial = emittersByMaterial(prepared);
   // Material by material, so that one summed-area table lives at a time.
@@ -59,18 +116,21 @@ void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered
       texture = prepared.textures[material.emissiveTexture];
       map = std::make_unique<EmissionMap>(scene.images[texture.image], texture.wrapS, texture.wrapT, material.emission);
     }
+    const MaterialCoverage coverage(scene, prepared, material);
     const bool doubleSided = material.flags & kMaterialDoubleSided;
     for (const auto& [t, instance] : perMaterial[m]) {
       const auto& v = prepared.triangles[t].v;
+      const Coverage covered = coverage.of(prepared.triangles[t]);
       GpuLight light;
       light.kind = static_cast<uint32_t>(GpuLightKind::Triangle) | (doubleSided ? kLightDoubleSided : 0u) |
-                   (map ? kLightTextured : 0u);
+                   (map ? kLightTextured : 0u) | (covered.varies ? kLightAlpha : 0u);
       light.triangle = t;
-      light.radiance = material.emission;
+      light.radiance = material.emission * covered.everywhere;
       const bool hasArea =
           setTriangle(light, prepared.positions[v[0]], prepared.positions[v[1]], prepared.positions[v[2]]);
       const auto uv = [&](int k) { return prepared.textureUv(texture, v[k]); };
-      const double mean = map ? map->mean(uv(0), uv(1), uv(2)) : luminance(material.emission);
+      const double mean =
+          (map ? map->mean(uv(0), uv(1), uv(2)) : static_cast<double>(luminance(material.emission))) * covered.mean;
       const double radiosity = kPi * mean * (doubleSided ? 2.0 : 1.0);
       if (instance >= 0 && mean > 0.0) {
         out.moving.push_back({static_cast<uint32_t>(out.lights.size()), instance, -1, radiosity});
@@ -126,6 +186,19 @@ void gatherEnvironment(const PreparedScene& prepared, Gathered& out) {
   keep(out, light, kPi * radius * radius * prepared.environment.integral);
 }
 
+void tabulateTriangles(PreparedScene& prepared) {
+  uint32_t first = kNoLight, last = 0;
+  for (uint32_t i = 0; i < prepared.triangleLights; ++i) {
+    first = std::min(first, prepared.lights[i].triangle);
+    last = std::max(last, prepared.lights[i].triangle);
+  }
+  if (prepared.triangleLights == 0) return;
+  prepared.firstLitTriangle = first;
+  prepared.lightOfTriangle.assign(size_t{last} - first + 1, kNoLight);
+  for (uint32_t i = 0; i < prepared.triangleLights; ++i)
+    prepared.lightOfTriangle[prepared.lights[i].triangle - first] = i;
+}
+
 }  // namespace
 
 bool setTriangle(GpuLight& light, const glm::vec3& p0, const glm::vec3& p1, const glm::vec3& p2) {
@@ -158,13 +231,16 @@ void gatherLights(const Scene& scene, PreparedScene& prepared, const Clip* clip)
   gatherTriangles(scene, prepared, gathered);
   for (const GpuLight& light : gathered.lights) {
     prepared.traits.texturedLights |= (light.kind & kLightTextured) != 0;
+    prepared.traits.alphaLights |= (light.kind & kLightAlpha) != 0;
   }
+  prepared.traits.triangleLights = !gathered.lights.empty();
   prepared.triangleLights = static_cast<uint32_t>(gathered.lights.size());
   gatherPunctual(scene, prepared, clip != nullptr ? movingNodes(scene, *clip) : std::vector<char>(), gathered);
   prepared.environment = tabulate(scene.environment);
   prepared.traits.environment = scene.environment.shines();
   gatherEnvironment(prepared, gathered);
   prepared.lights = std::move(gathered.lights);
+  tabulateTriangles(prepared);
   if (gathered.moving.empty()) {
     prepared.aliasTable = buildLightTable(gathered.power, prepared.lights);
     return;

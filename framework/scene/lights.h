@@ -14,6 +14,10 @@ inline constexpr uint32_t kLightDoubleSided = 1u << 8;
 inline constexpr uint32_t kLightTextured = 1u << 9;
 /// Corners 1 and 2 have changed places, since the triangle's instance mirrors: only lights that move.
 inline constexpr uint32_t kLightTurned = 1u << 10;
+/// Coverage varies over the triangle (alpha mask or blending), and its emission with it. One that is the same all over
+/// is part of the radiance.
+inline constexpr uint32_t kLightAlpha = 1u << 11;
+inline constexpr uint32_t kNoLight = 0xffffffffu;
 
 /// One light, 64 bytes, as shaders read it.
 /// Triangle: position = vertex 0, a = edge to vertex 1, b = edge to vertex 2 (world), radiance in nit.

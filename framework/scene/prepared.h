@@ -132,7 +132,11 @@ struct PreparedScene {
   std::vector<GpuLight> lights;       ///< those that can emit at all, triangles first
   std::vector<AliasCell> aliasTable;  ///< empty when there are no lights
   uint32_t triangleLights = 0;        ///< how many of `lights` are triangles
-  EnvironmentTable environment;       ///< of Scene::environment, which is the last of `lights`
+  /// Which light a triangle is, for rays that hit one: entry [triangle - firstLitTriangle], kNoLight where it is none.
+  /// Reaches from the first light's triangle to the last one's; empty without any.
+  std::vector<uint32_t> lightOfTriangle;
+  uint32_t firstLitTriangle = 0;
+  EnvironmentTable environment;  ///< of Scene::environment, which is the last of `lights`
   SceneTraits traits;
   Bounds bounds;                  ///< at rest
   uint64_t droppedTriangles = 0;  ///< degenerate or not finite
@@ -161,12 +165,13 @@ struct PreparedScene {
 /// Arranges a scene, CPU only. Alpha-tested are the materials with mask or blend. Under an instance that flips the
 /// winding, object-space tangents' bitangent signs flip too. Textured triangle lights (kLightTextured): radiance is the
 /// factor alone, power uses the texture's mean over the triangle's texels; a triangle whose texels are all black is no
-/// light. Static meshes are merged into world space (winding mended under mirroring transforms) except those that are
-/// shared so often that merging would multiply memory; emissive ones are always merged, so that a light's triangle is
-/// unique. Power of a triangle: π · area · luminance of its mean emission (twice that when double-sided); of a point 4π
-/// · luminance of its intensity; a spot by its cone; a directional by the area of the scene's disc; an environment as
-/// the directionals that it is made of. A mesh is not merged when `uses >= mergeUses` and `uses * triangles >
-/// mergeTriangles`.
+/// light. Emission is scaled by coverage where the material has alpha: the radiance by one that is the same all over,
+/// else the power by its mean (kLightAlpha); a triangle that covers nothing is no light. Static meshes are merged into
+/// world space (winding mended under mirroring transforms) except those that are shared so often that merging would
+/// multiply memory; emissive ones are always merged, so that a light's triangle is unique. Power of a triangle: π ·
+/// area · luminance of its mean emission (twice that when double-sided); of a point 4π · luminance of its intensity; a
+/// spot by its cone; a directional by the area of the scene's disc; an environment as the directionals that it is made
+/// of. A mesh is not merged when `uses >= mergeUses` and `uses * triangles > mergeTriangles`.
 struct PrepareLimits {
   uint64_t mergeTriangles = 2'000'000;
   uint32_t mergeUses = 4;

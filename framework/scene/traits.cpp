@@ -8,6 +8,8 @@ std::string traitDefines(const SceneTraits& traits) {
     if (holds) lines += std::string("#define SCENE_") + name + " 1\n";
   };
   define(traits.texturedLights, "TEXTURED_LIGHTS");
+  define(traits.triangleLights, "TRIANGLE_LIGHTS");
+  define(traits.alphaLights, "ALPHA_LIGHTS");
   define(traits.vertexColors, "VERTEX_COLORS");
   define(traits.uvSets, "UV_SETS");
   define(traits.uvTransforms, "UV_TRANSFORMS");

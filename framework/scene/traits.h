@@ -9,6 +9,8 @@ namespace weir::scene {
 /// prepareScene() finds them; a new model adds its trait here, to traitDefines() and to where it is found.
 struct SceneTraits {
   bool texturedLights = false;  ///< SCENE_TEXTURED_LIGHTS: some emissive triangle's radiance varies with its texture
+  bool triangleLights = false;  ///< SCENE_TRIANGLE_LIGHTS: some light is an emissive triangle
+  bool alphaLights = false;     ///< SCENE_ALPHA_LIGHTS: some emissive triangle's coverage varies over it
   bool vertexColors = false;    ///< SCENE_VERTEX_COLORS: some triangle's base colour is scaled by its vertices'
   bool uvSets = false;          ///< SCENE_UV_SETS: some texture is read at the second set of coordinates
   bool uvTransforms = false;    ///< SCENE_UV_TRANSFORMS: some texture's coordinates are transformed

@@ -33,6 +33,14 @@ float longestSide(const PreparedScene& prepared) {
   return longest;
 }
 
+/// First triangle, number of entries, entries; nothing where no triangle is a light.
+std::vector<uint32_t> packLightOfTriangle(const PreparedScene& prepared) {
+  if (prepared.lightOfTriangle.empty()) return {};
+  std::vector<uint32_t> words{prepared.firstLitTriangle, static_cast<uint32_t>(prepared.lightOfTriangle.size())};
+  words.insert(words.end(), prepared.lightOfTriangle.begin(), prepared.lightOfTriangle.end());
+  return words;
+}
+
 }  // namespace
 
 std::vector<GpuInstance> packInstances(const PreparedScene& prepared, std::vector<SceneGpu::Draw>& draws) {
@@ -70,6 +78,7 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   materials_ = gpu::uploadBuffer(device, prepared.materials, kStorage, "scene materials");
   lights_ = gpu::uploadBuffer(device, prepared.lights, kStorage, "scene lights");
   alias_ = gpu::uploadBuffer(device, prepared.aliasTable, kStorage, "scene alias table");
+  lightOfTriangle_ = gpu::uploadBuffer(device, packLightOfTriangle(prepared), kStorage, "scene lights of triangles");
   colors_ = gpu::uploadBuffer(device, prepared.colors, kStorage, "scene vertex colours");
   uvs1_ = gpu::uploadBuffer(device, prepared.uvs1, kStorage, "scene texture coordinates 1");
   speculars_ = gpu::uploadBuffer(device, prepared.speculars, kStorage, "scene specular materials");
@@ -100,7 +109,7 @@ SceneGpu::~SceneGpu() {
 uint64_t SceneGpu::bytes() const {
   uint64_t sum = acceleration_.bytes() + environment_.bytes();
   for (const gpu::Buffer* b : {&positions_, &vertices_, &triangles_, &instances_, &materials_, &lights_, &alias_,
-                               &colors_, &uvs1_, &speculars_, &textureUses_}) {
+                               &lightOfTriangle_, &colors_, &uvs1_, &speculars_, &textureUses_}) {
     sum += b->size();
   }
   for (const gpu::Image& image : images_) sum += image.bytes();
@@ -154,10 +163,10 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
 
   const VkDescriptorBufferInfo frame{frameConstants.handle(), 0, slotBytes};
   constexpr uint32_t kOwn = kBindRays - kBindPositions + 1;
-  std::array<VkBuffer, kOwn + 3> handles = {positions_.handle(), vertices_.handle(),    triangles_.handle(),
-                                            instances_.handle(), materials_.handle(),   lights_.handle(),
-                                            alias_.handle(),     colors_.handle(),      uvs1_.handle(),
-                                            speculars_.handle(), textureUses_.handle(), rayCounter.handle()};
+  std::array<VkBuffer, kOwn + 3> handles = {
+      positions_.handle(), vertices_.handle(),    triangles_.handle(),       instances_.handle(), materials_.handle(),
+      lights_.handle(),    alias_.handle(),       lightOfTriangle_.handle(), colors_.handle(),    uvs1_.handle(),
+      speculars_.handle(), textureUses_.handle(), rayCounter.handle()};
   VkAccelerationStructureKHR top = acceleration_.top();
   uint32_t count = kOwn;
   if (moving != nullptr) {

@@ -22,13 +22,14 @@ enum SceneBinding : uint32_t {
   kBindMaterials,
   kBindLights,
   kBindAlias,
-  kBindColors,        ///< with the trait vertexColors
-  kBindUvs1,          ///< with uvSets
-  kBindSpeculars,     ///< with one of the specular traits
-  kBindTextureUses,   ///< with uvSets, uvTransforms or mipmaps
-  kBindRays,          ///< ray counter
-  kBindAcceleration,  ///< only on devices with acceleration structures
-  kBindEnvironment,   ///< its table; only in scenes that have one, as the next
+  kBindLightOfTriangle,  ///< with the trait triangleLights
+  kBindColors,           ///< with the trait vertexColors
+  kBindUvs1,             ///< with uvSets
+  kBindSpeculars,        ///< with one of the specular traits
+  kBindTextureUses,      ///< with uvSets, uvTransforms or mipmaps
+  kBindRays,             ///< ray counter
+  kBindAcceleration,     ///< only on devices with acceleration structures
+  kBindEnvironment,      ///< its table; only in scenes that have one, as the next
   kBindEnvironmentMap,
   // As in the last frame; only where a clip moves the scene.
   kBindPreviousPositions,
@@ -114,8 +115,8 @@ class SceneGpu {
   const Scene* scene_;
   const PreparedScene* prepared_;
   bool withAcceleration_;
-  gpu::Buffer positions_, vertices_, triangles_, instances_, materials_, lights_, alias_, colors_, uvs1_, speculars_,
-      textureUses_;
+  gpu::Buffer positions_, vertices_, triangles_, instances_, materials_, lights_, alias_, lightOfTriangle_, colors_,
+      uvs1_, speculars_, textureUses_;
   struct Texture {
     uint32_t image;
     VkSampler sampler;

@@ -1,4 +1,4 @@
-// From a hit to the packed surface: interpolation, textures, normal map, material.
+// From a hit to the surface there: interpolation, textures, normal map, material; and from that to the packed surface.
 #ifndef WEIR_HIT_SURFACE
 #define WEIR_HIT_SURFACE
 
@@ -13,25 +13,39 @@ vec3 facingNormal(vec3 n, vec3 view) {
   return d < 0.0 ? normalize(n - 2.0 * d * view) : n;
 }
 
+// In full precision. Both normals are turned towards the viewer.
 struct HitSurface {
-  PackedSurface surface;
+  vec3 position, geometricNormal, normal;
+  Reflection reflection;
   vec3 emission;  // nit, towards the viewer
-  vec3 position;
+  float distance;
+  float error;  // bound on the error of `position` by floating point, metres
 };
 
-// `jitter` 0 … 254 a side: where in its pixel the ray was shot (127: the centre).
-HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter) {
+// Which texels a surface shows: those of a pixel, for camera rays, or level 0 for everything further along a path.
+const bool kPixelTexels = true, kBaseTexels = false;
+
+// Every component's terms of world · p, all positive: rounding is by a few 2^-24 of them.
+vec3 termsOf(mat4x3 world, vec3 p) {
+  return abs(world[0]) * abs(p.x) + abs(world[1]) * abs(p.y) + abs(world[2]) * abs(p.z) + abs(world[3]);
+}
+
+HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, bool texels) {
   const uvec4 t = sceneTriangles[hit.triangle];
   const Instance instance = sceneInstances[hit.instance];
   const Material m = sceneMaterials[t.w];
   const vec3 b = vec3(1.0 - hit.barycentrics.x - hit.barycentrics.y, hit.barycentrics);
   const mat4x3 world = toWorld(instance);
-  const vec3 p0 = world * vec4(vertexPosition(t.x), 1.0);
-  const vec3 p1 = world * vec4(vertexPosition(t.y), 1.0);
-  const vec3 p2 = world * vec4(vertexPosition(t.z), 1.0);
+  const vec3 corner0 = vertexPosition(t.x), corner1 = vertexPosition(t.y), corner2 = vertexPosition(t.z);
+  const vec3 p0 = world * vec4(corner0, 1.0);
+  const vec3 p1 = world * vec4(corner1, 1.0);
+  const vec3 p2 = world * vec4(corner2, 1.0);
 
   HitSurface r;
   r.position = b.x * p0 + b.y * p1 + b.z * p2;
+  // Four roundings a corner, four more between them; in units of 2^-23 that leaves a factor of two.
+  const vec3 terms = max(max(termsOf(world, corner0), termsOf(world, corner1)), termsOf(world, corner2));
+  r.error = max(terms.x, max(terms.y, terms.z)) * (8.0 / 8388608.0);
   vec3 geometric = normalize(cross(p1 - p0, p2 - p0));
   if (instance.flipsWinding != 0u) geometric = -geometric;
   const bool front = dot(geometric, direction) < 0.0;
@@ -46,7 +60,9 @@ HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter) {
   vec3 n = cofactor * (b.x * unpackNormal(v0.normal) + b.y * unpackNormal(v1.normal) + b.z * unpackNormal(v2.normal));
   n = dot(n, n) > 0.0 ? normalize(n) : geometric;
 #ifdef SCENE_MIPMAPS
-  const Lookup at = lookupAt(t, Corners(p0, p1, p2), hit, origin, direction);
+  Lookup at;
+  if (texels == kPixelTexels) at = lookupAt(t, Corners(p0, p1, p2), hit, origin, direction);
+  else at = baseLookupAt(t, hit);
 #else
   const Lookup at = Lookup(coordinatesAt(t, hit.barycentrics));
 #endif
@@ -69,7 +85,7 @@ HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter) {
   base *= colorAt(t, hit.barycentrics).rgb;
 #endif
   if (m.baseColorTexture >= 0) base *= look(m.baseColorTexture, at).rgb;
-  const Reflection reflection = reflectionOf(t.w, base, at);
+  r.reflection = reflectionOf(t.w, base, at);
   r.emission = vec3(0.0);
   if ((m.flags & kMaterialEmissive) != 0u && (front || (m.flags & kMaterialDoubleSided) != 0u)) {
     r.emission = m.emission;
@@ -79,14 +95,41 @@ HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, uvec2 jitter) {
   if ((m.flags & kMaterialUnlit) != 0u) r.emission = base;
 #endif
 
-  const vec3 view = -direction;
-  r.surface.distance = length(r.position - origin);
-  r.surface.geometricNormal = packNormal(geometric * side);
-  r.surface.shadingNormal = packNormal(facingNormal(n * side, view));
-  r.surface.diffuse = packAlbedo(reflection.diffuse);
-  r.surface.specular = packAlbedo(reflection.f0);
-  r.surface.roughnessJitter = jitter.x | (jitter.y << 8u) | (packRoughness(reflection.roughness, reflection.f90) << 16u);
+  r.distance = length(r.position - origin);
+  r.geometricNormal = geometric * side;
+  r.normal = facingNormal(n * side, -direction);
   return r;
+}
+
+// `jitter` 0 … 254 a side: where in its pixel the ray was shot (127: the centre).
+PackedSurface packSurface(HitSurface s, uvec2 jitter) {
+  PackedSurface p;
+  p.distance = s.distance;
+  p.geometricNormal = packNormal(s.geometricNormal);
+  p.shadingNormal = packNormal(s.normal);
+  p.diffuse = packAlbedo(s.reflection.diffuse);
+  p.specular = packAlbedo(s.reflection.f0);
+  p.roughnessJitter = jitter.x | (jitter.y << 8u) | (packRoughness(s.reflection.roughness, s.reflection.f90) << 16u);
+  return p;
+}
+
+// What would be unpacked from that, but for the rounding.
+Surface surfaceFrom(HitSurface hit, vec3 direction) {
+  Surface s;
+  s.position = hit.position;
+  s.geometricNormal = hit.geometricNormal;
+  s.normal = hit.normal;
+  s.view = -direction;
+  s.diffuse = clamp(hit.reflection.diffuse, 0.0, 1.0);
+  s.f0 = clamp(hit.reflection.f0, 0.0, 1.0);
+#ifdef SCENE_F90
+  s.f90 = clamp(hit.reflection.f90, 0.0, 1.0);
+#endif
+  const float roughness = clamp(hit.reflection.roughness, 0.0, 1.0);
+  s.alpha = max(roughness * roughness, kSmallestAlpha);
+  s.distance = hit.distance;
+  s.error = hit.error;
+  return s;
 }
 
 PackedSurface noSurface() { return PackedSurface(0.0, 0u, 0u, 0u, 0u, 0x7f7fu); }

@@ -12,7 +12,9 @@
 #endif
 
 const uint kPoint = 0u, kSpot = 1u, kDirectional = 2u, kTriangle = 3u, kEnvironment = 4u;
-const uint kKindMask = 0xffu, kLightDoubleSided = 1u << 8, kLightTextured = 1u << 9, kLightTurned = 1u << 10;
+const uint kKindMask = 0xffu, kLightDoubleSided = 1u << 8, kLightTextured = 1u << 9, kLightTurned = 1u << 10,
+           kLightAlpha = 1u << 11;
+const uint kNoLight = 0xffffffffu;
 
 // A point on a light as seen from a surface.
 struct LightSample {
@@ -52,15 +54,39 @@ vec2 placeOnTriangle(uint place) {
   return vec2(root * (1.0 - u.y), root * u.y);
 }
 
-#ifdef SCENE_TEXTURED_LIGHTS
-vec3 lightTexture(Light light, vec2 barycentrics) {
+// The light that a triangle is, for rays that hit one; kNoLight: none.
+uint lightOfTriangle(uint triangle) {
+#ifdef SCENE_TRIANGLE_LIGHTS
+  const uint entry = triangle - sceneLitTriangles.first;  // wraps round below the first
+  if (entry < sceneLitTriangles.count) return sceneLitTriangles.lights[entry];
+#endif
+  return kNoLight;
+}
+
+// From the barycentrics of a light to those of its triangle, and back.
+vec2 turnedBarycentrics(Light light, vec2 barycentrics) {
 #ifdef SCENE_ANIMATED
   // Corners 1 and 2 of a triangle that its transform mirrors have changed places, so that it faces the way that it emits.
-  if ((light.kind & kLightTurned) != 0u) barycentrics = barycentrics.yx;
+  if ((light.kind & kLightTurned) != 0u) return barycentrics.yx;
 #endif
-  return emissionTexture(light.triangle, barycentrics);
+  return barycentrics;
 }
+
+// Radiance of a triangle at a place on it, nit: what a ray that reaches the place finds there in the mean, which is less where alpha
+// lets it through.
+vec3 emittedRadiance(Light light, vec2 barycentrics) {
+  vec3 radiance = light.radiance;
+#if defined(SCENE_TEXTURED_LIGHTS) || defined(SCENE_ALPHA_LIGHTS)
+  const vec2 at = turnedBarycentrics(light, barycentrics);
 #endif
+#ifdef SCENE_TEXTURED_LIGHTS
+  if ((light.kind & kLightTextured) != 0u) radiance *= emissionTexture(light.triangle, at);
+#endif
+#ifdef SCENE_ALPHA_LIGHTS
+  if ((light.kind & kLightAlpha) != 0u) radiance *= triangleCoverage(light.triangle, at);
+#endif
+  return radiance;
+}
 
 LightSample evaluateTriangle(Light light, vec2 barycentrics, vec3 position) {
   LightSample s;
@@ -76,10 +102,7 @@ LightSample evaluateTriangle(Light light, vec2 barycentrics, vec3 position) {
     s.radiance = vec3(0.0);
     return s;
   }
-  s.radiance = light.radiance * (cosine / d2);
-#ifdef SCENE_TEXTURED_LIGHTS
-  if ((light.kind & kLightTextured) != 0u) s.radiance *= lightTexture(light, barycentrics);
-#endif
+  s.radiance = emittedRadiance(light, barycentrics) * (cosine / d2);
   return s;
 }
 

@@ -74,10 +74,12 @@ float levelOf(Footprint f, int texture, vec2 edge1, vec2 edge2) {
 struct Lookup {
   Coordinates at, edge1, edge2;
   Footprint footprint;
+  bool base;  // level 0 of all textures
 };
 
 Lookup lookupAt(uvec4 triangle, Corners corners, Hit hit, vec3 origin, vec3 direction) {
   Lookup l;
+  l.base = false;
   l.at = coordinatesAt(triangle, hit.barycentrics);
   l.edge1.set0 = sceneVertices[triangle.y].uv - sceneVertices[triangle.x].uv;
   l.edge2.set0 = sceneVertices[triangle.z].uv - sceneVertices[triangle.x].uv;
@@ -89,7 +91,17 @@ Lookup lookupAt(uvec4 triangle, Corners corners, Hit hit, vec3 origin, vec3 dire
   return l;
 }
 
+// Level 0, however large the texels are.
+Lookup baseLookupAt(uvec4 triangle, Hit hit) {
+  Lookup l;
+  l.at = coordinatesAt(triangle, hit.barycentrics);
+  l.edge1 = l.edge2 = l.at;
+  l.base = true;
+  return l;
+}
+
 vec4 look(int texture, Lookup l) {
+  if (l.base) return sampleTexture(texture, l.at);
   const float level = levelOf(l.footprint, texture, setOf(texture, l.edge1), setOf(texture, l.edge2));
   return textureLod(sceneTextures[nonuniformEXT(texture)], placeIn(texture, l.at), level);
 }

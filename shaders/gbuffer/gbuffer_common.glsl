@@ -21,8 +21,8 @@ void writePixel(uvec2 pixel, Hit hit, vec3 direction, uvec2 jitter) {
     imageStore(out_emission, ivec2(pixel), vec4(background, 0.0));
     before = cameraProject(previousCamera, previousCamera.origin.xyz + direction, frameSize);
   } else {
-    const HitSurface s = surfaceAt(hit, camera.origin.xyz, direction, jitter);
-    out_surface[index] = s.surface;
+    const HitSurface s = surfaceAt(hit, camera.origin.xyz, direction, kPixelTexels);
+    out_surface[index] = packSurface(s, jitter);
     imageStore(out_emission, ivec2(pixel), vec4(s.emission, 1.0));
     before = cameraProject(previousCamera, previousPosition(hit, s.position), frameSize);
   }

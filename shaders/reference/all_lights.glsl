@@ -23,12 +23,8 @@ LightSample sampleBySolidAngle(Light light, SphericalTriangle t, vec2 u, vec3 po
   const float facing = -dot(normal, light.position - position);  // the same for every direction into the triangle
   const bool lit = facing > 0.0 || ((light.kind & kLightDoubleSided) != 0u && facing < 0.0);
   s.target = position + s.direction * (dot(normal, light.position - position) / dot(normal, s.direction));
-  s.radiance = lit ? light.radiance : vec3(0.0);
-#ifdef SCENE_TEXTURED_LIGHTS
-  if (lit && (light.kind & kLightTextured) != 0u) {
-    s.radiance *= lightTexture(light, clamp(barycentricsAlong(light, position, s.direction), 0.0, 1.0));
-  }
-#endif
+  s.radiance = vec3(0.0);
+  if (lit) s.radiance = emittedRadiance(light, clamp(barycentricsAlong(light, position, s.direction), 0.0, 1.0));
   return s;
 }
 

@@ -3,55 +3,11 @@
 // Several reservoirs of a pixel share the candidates and choose from them independently.
 #include "random.glsl"
 #include "reservoir.glsl"
-#include "spherical_triangle.glsl"
-#include "bsdf_sample.glsl"
+#include "light_sample.glsl"
 
 const int kByArea = 0, kBySolidAngle = 1;
 
-// A point on a light, drawn for a surface.
-struct Candidate {
-  LightSample light;
-  uint place;
-  float spread;  // 1 / density of the point: m² on triangles, steradian on the environment, 1 for punctual lights
-};
-
-// A point on a triangle, drawn by area or by solid angle or, on glossy surfaces with the probability lobeShare, along the specular
-// lobe: a mixture whose density is that of all ways together.
-Candidate drawOnTriangle(Light light, vec2 u, Surface surface) {
-  const vec3 position = surface.position;
-  Candidate c;
-  c.spread = 0.0;
-  const float lobe = isGlossy(surface) ? param_lobeShare : 0.0;
-  SphericalTriangle t;
-  t.near = false;
-  if (param_triangles == kBySolidAngle) {
-    t = sphericalTriangle(light.position - position, light.a, light.b, surface.error);
-  }
-  // Seen edge on it has no solid angle, and whatever place stands here counts for nothing.
-  bool counts = !t.near || t.solidAngle > 0.0;
-  if (u.x < lobe) {
-    vec2 barycentrics;
-    counts = counts && meetsTriangle(light, position, sampleSpecular(surface, vec2(u.x / lobe, u.y)), barycentrics);
-    c.place = placeAt(barycentrics);
-  } else {
-    u.x = (u.x - lobe) / (1.0 - lobe);
-    c.place = packPlace(u);
-    if (t.near && counts) c.place = placeAt(barycentricsAlong(light, position, sampleSphericalTriangle(t, u)));
-  }
-  c.light = evaluateLight(light, c.place, position);
-  if (!counts) c.light.radiance = vec3(0.0);
-  if (lobe == 0.0 && !t.near) {
-    c.spread = c.light.area;
-    return c;
-  }
-  // dω = cos θ / d² dA turns densities per steradian into ones per m², at the very point that the 16 bits name.
-  const vec3 d = c.light.target - position;
-  const float perArea = abs(dot(cross(light.a, light.b), c.light.direction)) / (2.0 * light.area * dot(d, d));
-  float density = (1.0 - lobe) * (t.near ? perArea / t.solidAngle : 1.0 / c.light.area);
-  if (lobe > 0.0) density += lobe * specularDensity(surface, c.light.direction) * perArea;
-  if (counts && density > 0.0) c.spread = 1.0 / density;
-  return c;
-}
+TriangleWays triangleWays() { return TriangleWays(param_triangles == kBySolidAngle, param_lobeShare); }
 
 Candidate drawCandidate(Light light, uvec2 bits, Surface surface, inout Random random) {
   Candidate c;
@@ -63,7 +19,7 @@ Candidate drawCandidate(Light light, uvec2 bits, Surface surface, inout Random r
   }
 #endif
   const vec2 u = vec2(uniformFloat(bits.x), uniformFloat(bits.y));
-  if ((light.kind & kKindMask) == kTriangle) return drawOnTriangle(light, u, surface);
+  if ((light.kind & kKindMask) == kTriangle) return drawOnTriangle(light, u, surface, triangleWays());
   c.place = packPlace(u);
   c.light = evaluateLight(light, c.place, surface.position);
   c.spread = c.light.area;
