@@ -26,7 +26,8 @@ void PathTracer::describe(PassDescription& d) {
       .oneOf({"mis", "lights", "bsdf"})
       .specialises()
       .doc(
-          "How light from emissive triangles and environment is found: by light samples and by the BSDF's rays, weighed "
+          "How light from emissive triangles and environment is found: by light samples and by the BSDF's rays, "
+          "weighed "
           "by the balance heuristic, or by one of them alone: noisier, and a check");
   d.param("uniformShare", 0.1f)
       .range(0, 1)

@@ -35,7 +35,7 @@ float visibilityThere(Surface neighbour, LightSample light) {
 }
 #endif
 // What a density per m² of the neighbour's light is per m² of the light here.
-float measureThere(LightSample there, LightSample here) { return MUTANT(4, 1.0, there.area / here.area); }
+float measureThere(LightSample there, LightSample here) { return there.area / here.area; }
 float weightHere(Reservoir r, LightSample here) {
   const float before = scenePreviousLights[lightOf(r)].area;  // 0: not a triangle
   return before > 0.0 ? r.weight * MUTANT(5, 1.0, here.area / before) : r.weight;

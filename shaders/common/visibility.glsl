@@ -31,7 +31,7 @@ ShadowSegment shadowSegment(Surface s, LightSample light) {
   r.way = light.target - r.origin;
   const vec3 largest = max(abs(light.target), abs(r.origin));
   const float targetError = max(largest.x, max(largest.y, largest.z)) * (16.0 / 8388608.0) + intersectionError();
-  r.extent = MUTANT(47, 0.95, 1.0) - targetError * inversesqrt(dot(r.way, r.way));
+  r.extent = MUTANT(47, 0.5, 1.0) - targetError * inversesqrt(dot(r.way, r.way));
   return r;
 }
 

@@ -20,7 +20,7 @@ void run(uvec2 pixel) {
 #ifdef FINAL_VISIBILITY
       if (MUTANT(1, false, !isSeen(r))) through = traceVisibility(surface, light);
 #endif
-      sum += MUTANT(29, min(f * (r.weight * through), vec3(4.0)), f * (r.weight * through));
+      sum += MUTANT(29, min(f * (r.weight * through), vec3(1.0)), f * (r.weight * through));
     }
     color += sum / float(in_reservoirs_count);
   }

@@ -13,7 +13,6 @@ std::vector<Mutant> makeMutants() {
       {1, "the final shadow ray is forgotten for samples that were not seen", "room-unshadowed", {}, true},
       {2, "last frame's target with this frame's lights", "moving", {}, true},
       {3, "last frame's target with this frame's acceleration structure", "moving", {}, true},
-      {4, "densities per m² are not brought to the other frame's area", "moving", {}, true},
       {5, "W does not follow the area of a light that grows", "moving", {}, true},
       {6, "visibility is left out of the neighbours' targets", "room-pairwise", {}, true},
       {7, "1/Z without any test of what survives", "room-z", {}, true},
@@ -44,11 +43,21 @@ std::vector<Mutant> makeMutants() {
       {42, "a point light's window without its second square", "points", {}, true},
       {43, "the density of a pick forgets the uniform share", "points", {}, true},
       {44, "Fresnel's angle is taken from the normal", "room-gloss"},
-      {45, "shadowing and masking are taken as independent", "room-gloss"},
+      {45, "shadowing and masking are taken as independent", "rough"},
       {46, "the diffuse lobe gets what the specular one has reflected", "room-initial", {}, true},
-      {47, "shadow rays end short of the light", "room-initial"},
+      {47, "shadow rays end half-way", "room-initial"},
       {48, "shadow rays start off the surface", "room-initial"},
       {49, "directions are uneven within a cell of the sky", "sky"},
+      {51, "the lobe's share is missing in the density of points on lamps", "gloss", {}, true},
+      {52, "the density of points forgets that some go along the lobe", "gloss", {}, true},
+      {53, "points by solid angle claim the density of points by area", "room-initial", {}, true},
+      {60, "light samples keep all their weight beside the BSDF's", "paths", {}, true},
+      {61, "paths that survive the roulette stand for themselves alone", "paths", {}, true},
+      {62, "the light's density at a hit is left per m²", "paths"},
+      {63, "the BSDF's density takes its lobes as equally likely", "paths", {}, true},
+      {64, "paths end a vertex early", "paths", {}, true},
+      {65, "lamps that rays meet keep all their weight", "paths", {}, true},
+      {66, "the sky's density at a miss forgets the uniform share", "sky-paths"},
   };
   // In what the host prepares.
   m.push_back({101, "light pdfs add up to 1.01", "room-initial", [](scene::PreparedScene& p) {
@@ -60,9 +69,9 @@ std::vector<Mutant> makeMutants() {
                    p.aliasTable[i].threshold = p.aliasTable[i + 1].threshold;
                  p.aliasTable.back().threshold = first;
                }});
-  m.push_back({103, "areas of triangle lights are 1 % too small", "room-area", [](scene::PreparedScene& p) {
-                 for (scene::GpuLight& light : p.lights) light.area *= 0.99f;
-               }});
+  m.push_back(
+      {103, "the brightest light claims a hundredth more than its share", "points",
+       [](scene::PreparedScene& p) { std::ranges::max_element(p.lights, {}, &scene::GpuLight::pdf)->pdf *= 1.01f; }});
   m.push_back({104, "aliases of the table are off by one", "points", [](scene::PreparedScene& p) {
                  for (scene::AliasCell& cell : p.aliasTable) cell.alias = (cell.alias + 1) % p.aliasTable.size();
                }});

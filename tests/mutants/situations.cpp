@@ -101,6 +101,17 @@ render::Stage glossStage() {
   return staged(b.scene, lookAt({0.2f, 1.3f, 3.4f}, {0, 0.8f, -0.4f}, 45));
 }
 
+/// Rough metal all around, under one lamp.
+render::Stage roughStage() {
+  Builder b;
+  const int metal = b.material(coloured({0.9f, 0.8f, 0.7f}, 1.0f, 0.9f));
+  b.add(quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, metal));
+  b.add(quad({-2, 0, -1}, {2, 0, -1}, {2, 2.5f, -1}, {-2, 2.5f, -1}, metal));
+  b.add(quad({-0.6f, 1.9f, 0.2f}, {0.2f, 1.9f, 0.2f}, {0.2f, 1.7f, 0.9f}, {-0.6f, 1.7f, 0.9f},
+             b.material(lamp({5, 5, 4}, true))));
+  return staged(b.scene, lookAt({0.2f, 1.3f, 3.4f}, {0, 0.8f, -0.4f}, 45));
+}
+
 /// A sky with a bright patch over a floor with a wall, some of it glossy.
 render::Stage skyStage() {
   Builder b;
@@ -116,6 +127,16 @@ render::Stage skyStage() {
       },
       1.0f, 0.3f);
   return staged(b.scene, lookAt({0.5f, 1.4f, 3.2f}, {0, 0.5f, -0.3f}, 45));
+}
+
+/// The same with a lamp, so that the sky is not all that is picked.
+render::Stage lampUnderSkyStage() {
+  render::Stage s = skyStage();
+  Builder b;
+  b.scene = s.scene;
+  b.add(quad({-1.2f, 1.8f, 0.6f}, {-0.6f, 1.8f, 0.6f}, {-0.6f, 1.6f, 1.0f}, {-1.2f, 1.6f, 1.0f},
+             b.material(lamp({4, 4, 4}, true))));
+  return staged(b.scene, s.camera);
 }
 
 /// Light through a pane that lets half of it through, and past one with holes.
@@ -199,6 +220,18 @@ Situation movingSituation(const std::string& name, const std::string& mis) {
           kGraph, reuse(mis, true, {"temporal.confidenceCap=20"}), {"spatial"}};
 }
 
+/// The path tracer against itself without the bug: what is right there is shown elsewhere, by closed forms and by
+/// another renderer.
+Situation pathSituation(const std::string& name, const std::string& about, render::Stage (*stage)()) {
+  const std::vector<std::string> set = {"path.maxBounces=4", "path.rouletteStart=1", "path.samples=4"};
+  Situation s{name, about, stage, "graphs/reference.json", set};
+  s.frames = 1;
+  s.reference = s.graph;
+  s.referenceSet = set;
+  s.referenceRestarts = 256;
+  return s;
+}
+
 std::vector<Situation> makeSituations() {
   std::vector<Situation> s;
   s.push_back(roomSituation("room-pairwise", "reuse in space and time with rays, pairwise", reuse("pairwise", true)));
@@ -231,6 +264,8 @@ std::vector<Situation> makeSituations() {
   s.back().stage = paneStage;
   s.push_back(initialSituation("points", "spot, window, unlike powers", pointsStage,
                                {"initial.candidates=16", "initial.uniformShare=0.3"}));
+  s.push_back(pathSituation("paths", "four bounces through the room", roomStage));
+  s.push_back(pathSituation("sky-paths", "four bounces under a sky with a lamp", lampUnderSkyStage));
   return s;
 }
 
