@@ -5,7 +5,13 @@ namespace CLI {
 class App;
 }
 
+/// An exit status that is neither done nor an error: a verdict. Everything has been said already.
+struct CommandStatus {
+  int status;
+};
+
 void addRenderCommand(CLI::App& app);
+void addVerifyCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addPassesCommand(CLI::App& app);
 void addSceneCommand(CLI::App& app);

@@ -1,4 +1,5 @@
 // `weir`: picks the command and turns what it throws into an exit status: 0 done, 1 failed while running, 2 bad input.
+// `verify` adds its verdict: 1 biased, 3 undecided.
 #include "commands.h"
 
 #include <weir/core/error.h>
@@ -65,6 +66,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
   app.require_subcommand(1);
   addRenderCommand(app);
   addCompareCommand(app);
+  addVerifyCommand(app);
   addGraphCommand(app);
   addPassesCommand(app);
   addSceneCommand(app);
@@ -72,6 +74,8 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
   try {
     app.parse(argc, argv);
     return std::fflush(stdout) == 0 ? kDone : kFailed;
+  } catch (const CommandStatus& verdict) {
+    return std::fflush(stdout) == 0 ? verdict.status : kFailed;
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {

@@ -5,11 +5,12 @@
 #include <weir/render/render.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cstdio>
 #include <memory>
 
 #include "commands.h"
+#include "graph_options.h"
+#include "render_options.h"
 
 namespace {
 
@@ -21,16 +22,6 @@ std::pair<std::string, std::string> splitOutput(const std::string& text, const c
     throw InputError(fmt::format("{} '{}': expected output=file.exr", flag, text));
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
-}
-
-void parseSize(const std::string& text, uint32_t& width, uint32_t& height) {
-  const char* end = text.data() + text.size();
-  const auto w = std::from_chars(text.data(), end, width);
-  if (w.ec == std::errc() && w.ptr != end && *w.ptr == 'x') {
-    const auto h = std::from_chars(w.ptr + 1, end, height);
-    if (h.ec == std::errc() && h.ptr == end) return;
-  }
-  throw InputError(fmt::format("--size '{}': expected WIDTHxHEIGHT, such as 1280x720", text));
 }
 
 struct Words {
@@ -61,18 +52,6 @@ void run(Words& words, bool exposureGiven) {
   }
 }
 
-void addAnimationOptions(CLI::App& command, weir::render::StageOptions& stage) {
-  CLI::Option* animate =
-      command.add_flag("--animate", stage.animate, "Play a clip of the scene: frame i shows time + i * time step");
-  command.add_option("--clip", stage.clip, "Its name, or its number from 0; without it the first")->needs(animate);
-  command.add_option("--time", stage.time, "Where in the clip frame 0 is, seconds")
-      ->capture_default_str()
-      ->needs(animate);
-  command.add_option("--time-step", stage.timeStep, "Seconds from frame to frame")
-      ->capture_default_str()
-      ->needs(animate);
-}
-
 }  // namespace
 
 void addRenderCommand(CLI::App& app) {
@@ -80,7 +59,6 @@ void addRenderCommand(CLI::App& app) {
   auto words = std::make_shared<Words>();
   auto& o = words->options;
   command->add_option("graph", o.graph, "Graph, a JSON file")->required();
-  command->add_option("--scene", o.stage.scene, "glTF file")->required();
   command->add_option("--size", words->size, "Width x height in pixels")->capture_default_str();
   command->add_option("--frames", o.frames, "Frames in sequence; outputs are the last one")->capture_default_str();
   command->add_option("--average", o.average, "Outputs are the mean of the last so many frames")->capture_default_str();
@@ -92,25 +70,11 @@ void addRenderCommand(CLI::App& app) {
   command->add_option("--out", words->outputs, "output=file.exr or output=file.png")->allow_extra_args(false);
   command->add_option("--stderr", words->errors, "output=file.exr: standard error over the restarts")
       ->allow_extra_args(false);
-  command->add_option("--set", o.overrides.set, "pass.param=value")->allow_extra_args(false);
-  command->add_option("--enable", o.overrides.enable, "Pass to enable")->allow_extra_args(false);
-  command->add_option("--disable", o.overrides.disable, "Pass to disable")->allow_extra_args(false);
-  command->add_option("--lights", o.stage.lights, "Put so many point lights into a scene that has none");
-  command->add_option("--light-seed", o.stage.lightSeed, "Seed of their places and colours")->capture_default_str();
-  command->add_flag("--replace-lights", o.stage.replaceLights, "With --lights: drop the scene's own lights");
-  command->add_option("--environment", o.stage.environment, "Light from all around: equirectangular .exr or .hdr");
-  command->add_option("--environment-scale", o.stage.environmentScale, "Multiplies it")->capture_default_str();
-  command
-      ->add_option("--environment-rotation", o.stage.environmentRotation,
-                   "Degrees about +Y, counter-clockwise as seen from above")
-      ->capture_default_str();
-  command->add_option("--camera", o.stage.camera, "Name of a camera of the scene, or ex,ey,ez,tx,ty,tz[,vfov degrees]");
-  addAnimationOptions(*command, o.stage);
+  addOverrideOptions(*command, o.overrides);
+  addStageOptions(*command, o.stage);
   CLI::Option* exposure = command->add_option("--exposure", words->exposure, "EV, for every output.Tonemap");
-  command->add_option("--trace", o.trace, "auto, pipeline or query")->capture_default_str();
-  command->add_option("--device", o.device, "cpu, a number from `weir devices`, or part of a name");
+  addDeviceOptions(*command, o.device, o.trace, o.validation);
   command->add_option("--stats", o.statistics, "JSON file with times, memory and rays");
-  command->add_option("--plugin-path", o.pluginPaths, "Folder with plugins, searched first")->allow_extra_args(false);
-  command->add_flag("--validate", o.validation, "Run under the Vulkan validation layers; any message is a failure");
+  addPluginPath(*command, o.pluginPaths);
   command->callback([words, exposure] { run(*words, exposure->count() > 0); });
 }

@@ -88,6 +88,7 @@ ordered_json describe(const Scene& scene, const PreparedScene& prepared) {
                  {"mipmaps", t.mipmaps},
                  {"specular_glossiness", t.specularGlossiness},
                  {"dielectric_specular", t.dielectricSpecular},
+                 {"blend", t.blend},
                  {"unlit", t.unlit},
                  {"f90", t.f90}};
   j["warnings"] = scene.warnings;

@@ -4,219 +4,55 @@
     scenes/make_scenes.py [FOLDER]
 
 cornell.glb               a box with red and green walls, two blocks and a quad lamp in the ceiling
-cornell-1000-points.glb   the same box, lit by 1000 coloured point lights instead
+cornell-lambert.glb       the same box of Lambertian surfaces, for comparison with other renderers (docs/offline.md)
+cornell-1000-points.glb   the first box, lit by 1000 coloured point lights instead
 materials.glb             spheres, metallic (rows) by roughness (columns), under a quad and a point light
 cornell-moving.glb        the box with a turning block, a skinned column, a morphing ball and a lamp that moves and grows; a clip
                           for each of them, and one for all
 sky.hdr                   an environment: a clear sky with a low sun over dark ground, 64 x 32 texels
+interior.glb              a furnished room of Lambertian surfaces: sun through blinds, two area lamps, a point light (docs/offline.md)
 alpha-mask.glb            leaf and grid cut-outs (a generated PNG) that throw shadows on a floor
 Metres, +Y up. Every file passes the Khronos validator (tools/gltf-validator).
 """
-import json
 import math
 import os
 import struct
 import sys
 import zlib
 
-FLOAT, USHORT = 5126, 5123
+import interior
+from gltf_writer import USHORT, Gltf, Random, Shape, sub, unit
+
 WHITE, RED, GREEN = (0.73, 0.73, 0.73), (0.63, 0.065, 0.05), (0.14, 0.45, 0.091)
-
-
-def sub(a, b): return tuple(x - y for x, y in zip(a, b))
-def cross(a, b): return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def unit(v):
-    length = math.sqrt(sum(x * x for x in v))
-    return tuple(x / length for x in v)
-
-
-class Random:
-    """SplitMix64, so that the files do not depend on Python's version."""
-
-    def __init__(self, seed): self.state = seed
-
-    def number(self):
-        self.state = (self.state + 0x9E3779B97F4A7C15) & (2**64 - 1)
-        z = self.state
-        z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & (2**64 - 1)
-        z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & (2**64 - 1)
-        return ((z ^ (z >> 31)) >> 11) * 2.0**-53
-
-
-class Shape:
-    """Triangles with normals and, when `uvs` is filled, texture coordinates."""
-
-    def __init__(self): self.positions, self.normals, self.uvs, self.indices = [], [], [], []
-
-    def quad(self, a, b, c, d, uv=False):
-        """Corners counter-clockwise as seen from the front; texture upright with `a` at the bottom left."""
-        normal, base = unit(cross(sub(b, a), sub(d, a))), len(self.positions)
-        self.positions += [a, b, c, d]
-        self.normals += [normal] * 4
-        if uv: self.uvs += [(0, 1), (1, 1), (1, 0), (0, 0)]
-        self.indices += [base, base + 1, base + 2, base, base + 2, base + 3]
-        return self
-
-    def block(self, centre, size, degrees):
-        """A box that stands on its base centre, turned about Y."""
-        s, c = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
-        hx, h, hz = size[0] / 2, size[1], size[2] / 2
-
-        def at(x, y, z): return (centre[0] + c * x + s * z, centre[1] + y, centre[2] - s * x + c * z)
-        for a, b in (((-hx, hz), (hx, hz)), ((hx, hz), (hx, -hz)), ((hx, -hz), (-hx, -hz)), ((-hx, -hz), (-hx, hz))):
-            self.quad(at(a[0], 0, a[1]), at(b[0], 0, b[1]), at(b[0], h, b[1]), at(a[0], h, a[1]))
-        return self.quad(at(-hx, h, hz), at(hx, h, hz), at(hx, h, -hz), at(-hx, h, -hz))
-
-    def sphere(self, rings, segments):
-        """Unit sphere, smooth; one vertex at each pole."""
-        def add(y, radius, angle):
-            n = (radius * math.sin(angle), y, radius * math.cos(angle))
-            self.positions.append(n)
-            self.normals.append(unit(n))
-        add(1, 0, 0)
-        for r in range(1, rings):
-            theta = math.pi * r / rings
-            for s in range(segments): add(math.cos(theta), math.sin(theta), 2 * math.pi * s / segments)
-        add(-1, 0, 0)
-        last = len(self.positions) - 1
-        def at(r, s): return 0 if r == 0 else last if r == rings else 1 + (r - 1) * segments + s % segments
-        for r in range(rings):
-            for s in range(segments):
-                a, b, c, d = at(r + 1, s), at(r + 1, s + 1), at(r, s + 1), at(r, s)
-                if r + 1 < rings: self.indices += [a, b, c] if r == 0 else [a, b, c, a, c, d]
-                else: self.indices += [a, c, d]
-        return self
-
-
-class Gltf:
-    """Collects one file; every method that adds something returns its index."""
-
-    def __init__(self):
-        self.binary = bytearray()
-        self.json = {"asset": {"version": "2.0", "generator": "weir scenes/make_scenes.py"}, "scene": 0,
-                     "scenes": [{"nodes": []}]}
-
-    def add(self, kind, entry):
-        self.json.setdefault(kind, []).append(entry)
-        return len(self.json[kind]) - 1
-
-    def view(self, data, target=None):
-        while len(self.binary) % 4: self.binary.append(0)
-        entry = {"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data)}
-        if target: entry["target"] = target
-        self.binary += data
-        return self.add("bufferViews", entry)
-
-    def floats(self, values, bounds=False, target=34962):
-        width = len(values[0])
-        data = b"".join(struct.pack("<%df" % width, *v) for v in values)
-        kind = {1: "SCALAR", 16: "MAT4"}.get(width, "VEC%d" % width)
-        entry = {"bufferView": self.view(data, target), "componentType": FLOAT, "count": len(values), "type": kind}
-        if bounds:
-            stored = [struct.unpack_from("<%df" % width, data, i * 4 * width) for i in range(len(values))]
-            entry["min"] = [min(v[k] for v in stored) for k in range(width)]
-            entry["max"] = [max(v[k] for v in stored) for k in range(width)]
-        return self.add("accessors", entry)
-
-    def geometry(self, shape):
-        """Attributes and indices of a primitive, without material."""
-        attributes = {"POSITION": self.floats(shape.positions, True), "NORMAL": self.floats(shape.normals)}
-        if shape.uvs: attributes["TEXCOORD_0"] = self.floats(shape.uvs)
-        data = struct.pack("<%dH" % len(shape.indices), *shape.indices)
-        indices = self.add("accessors", {"bufferView": self.view(data, 34963), "componentType": USHORT,
-                                         "count": len(shape.indices), "type": "SCALAR"})
-        return {"attributes": attributes, "indices": indices}
-
-    def material(self, name, color=WHITE, metallic=0.0, roughness=1.0, emission=None, **more):
-        pbr = {"baseColorFactor": [*color, 1.0], "metallicFactor": metallic, "roughnessFactor": roughness}
-        entry = {"name": name, "pbrMetallicRoughness": pbr, **more}
-        if emission:
-            strength = max(emission)
-            entry["emissiveFactor"] = [e / strength for e in emission]
-            entry["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": strength}}
-            self.use("KHR_materials_emissive_strength")
-        return self.add("materials", entry)
-
-    def use(self, extension):
-        used = self.json.setdefault("extensionsUsed", [])
-        if extension not in used: used.append(extension)
-
-    def node(self, **entry):
-        index = self.add("nodes", entry)
-        self.json["scenes"][0]["nodes"].append(index)
-        return index
-
-    def mesh(self, name, shape, material, **placed):
-        return self.node(name=name, mesh=self.add("meshes", {"name": name, "primitives": [{**self.geometry(shape), "material": material}]}),
-                         **placed)
-
-    def clip(self, name, tracks):
-        """`tracks`: (node, path, interpolation, times, values); values are tuples, or numbers for weights."""
-        clip = {"name": name, "channels": [], "samplers": []}
-        for node, path, interpolation, times, values in tracks:
-            values = [v if isinstance(v, tuple) else (v,) for v in values]
-            clip["samplers"].append({"input": self.floats([(t,) for t in times], True, None),
-                                     "output": self.floats(values, False, None), "interpolation": interpolation})
-            clip["channels"].append({"sampler": len(clip["samplers"]) - 1, "target": {"node": node, "path": path}})
-        self.add("animations", clip)
-
-    def point_light(self, name, position, color, candela):
-        self.use("KHR_lights_punctual")
-        lights = self.json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
-        lights.append({"type": "point", "color": [round(c, 4) for c in color], "intensity": round(candela, 6)})
-        self.node(name=name, translation=[round(p, 5) for p in position],
-                  extensions={"KHR_lights_punctual": {"light": len(lights) - 1}})
-
-    def camera(self, eye, target, degrees, aspect=16 / 9):
-        """A camera node; quaternion from the basis right, up, back."""
-        back = unit(sub(eye, target))
-        right = unit(cross((0, 1, 0), back))
-        up = cross(back, right)
-        w = math.sqrt(max(0.0, 1 + right[0] + up[1] + back[2])) / 2
-        q = [(up[2] - back[1]) / (4 * w), (back[0] - right[2]) / (4 * w), (right[1] - up[0]) / (4 * w), w]
-        index = self.add("cameras", {"name": "main", "type": "perspective", "perspective": {
-            "yfov": math.radians(degrees), "znear": 0.01, "zfar": 100.0, "aspectRatio": aspect}})
-        self.node(name="main", camera=index, translation=list(eye), rotation=q)
-
-    def write(self, path):
-        while len(self.binary) % 4: self.binary.append(0)
-        self.json["buffers"] = [{"byteLength": len(self.binary)}]
-        text = json.dumps(self.json, separators=(",", ":")).encode()
-        text += b" " * (-len(text) % 4)
-        size = 12 + 8 + len(text) + 8 + len(self.binary)
-        with open(path, "wb") as out:
-            out.write(struct.pack("<4sII", b"glTF", 2, size))
-            out.write(struct.pack("<I4s", len(text), b"JSON") + text)
-            out.write(struct.pack("<I4s", len(self.binary), b"BIN\0") + bytes(self.binary))
-
 
 # The room spans x -1..1, y 0..2, z -1..1 and is open towards +Z.
 BLOCKS = (((-0.35, 0.0, -0.3), (0.6, 1.2, 0.6), 18.0), ((0.37, 0.0, 0.35), (0.6, 0.6, 0.6), -17.0))
 
 
-def cornell_room(g, blocks=True):
-    white = g.material("white")
+def cornell_room(g, blocks=True, lambert=False):
+    white = g.material("white", lambert=lambert)
     room = Shape()
     room.quad((-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1))  # floor
     room.quad((-1, 2, -1), (1, 2, -1), (1, 2, 1), (-1, 2, 1))  # ceiling
     room.quad((-1, 0, -1), (1, 0, -1), (1, 2, -1), (-1, 2, -1))  # back
     g.mesh("room", room, white)
-    g.mesh("left wall", Shape().quad((-1, 0, 1), (-1, 0, -1), (-1, 2, -1), (-1, 2, 1)), g.material("red", RED))
-    g.mesh("right wall", Shape().quad((1, 0, -1), (1, 0, 1), (1, 2, 1), (1, 2, -1)), g.material("green", GREEN))
+    g.mesh("left wall", Shape().quad((-1, 0, 1), (-1, 0, -1), (-1, 2, -1), (-1, 2, 1)), g.material("red", RED, lambert=lambert))
+    g.mesh("right wall", Shape().quad((1, 0, -1), (1, 0, 1), (1, 2, 1), (1, 2, -1)), g.material("green", GREEN, lambert=lambert))
     if blocks:
         g.mesh("tall block", Shape().block(*BLOCKS[0]), white)
         g.mesh("short block", Shape().block(*BLOCKS[1]), white)
     g.camera((0, 1, 3.9), (0, 1, 0), 39.0, 1.0)
 
 
-def cornell(path):
+def cornell(path, lambert=False):
     g = Gltf()
-    cornell_room(g)
+    cornell_room(g, lambert=lambert)
     lamp = Shape().quad((-0.25, 1.98, -0.2), (0.25, 1.98, -0.2), (0.25, 1.98, 0.2), (-0.25, 1.98, 0.2))
-    g.mesh("lamp", lamp, g.material("lamp", (0.78, 0.78, 0.78), emission=(17.0, 12.0, 4.0)))
+    g.mesh("lamp", lamp, g.material("lamp", (0.78, 0.78, 0.78), emission=(17.0, 12.0, 4.0), lambert=lambert))
     g.write(path)
+
+
+def cornell_lambert(path): cornell(path, lambert=True)
 
 
 def in_block(p, margin):
@@ -437,8 +273,8 @@ def sky(path, width=64, height=32):
 
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
-    for name, make in (("cornell", cornell), ("cornell-1000-points", cornell_points), ("cornell-moving", cornell_moving),
-                       ("materials", materials), ("alpha-mask", alpha_mask)):
+    for name, make in (("cornell", cornell), ("cornell-lambert", cornell_lambert), ("cornell-1000-points", cornell_points), ("cornell-moving", cornell_moving),
+                       ("interior", interior.write), ("materials", materials), ("alpha-mask", alpha_mask)):
         path = os.path.join(folder, name + ".glb")
         make(path)
         print("%s: %d bytes" % (path, os.path.getsize(path)))

@@ -2,7 +2,8 @@
 # Puts the built program into a folder that runs on another x86-64 Linux machine with a Vulkan driver and nothing else
 # installed: program, plugins, shaders, graphs, scenes and every library that they need short of the C library.
 #
-#   tools/bundle.sh [--scene FILE]... OUTDIR     OUTDIR must not exist, or be an earlier bundle
+#   tools/bundle.sh [--oracle] [--scene FILE]... OUTDIR     OUTDIR must not exist, or be an earlier bundle
+# --oracle: the path tracer of tests/oracle too, with Embree (42 MB).
 set -euo pipefail
 
 usage() { sed -n '5p' "${BASH_SOURCE[0]}" | sed 's/^# *//'; }
@@ -12,12 +13,14 @@ here=$PWD
 absolute() { case "$1" in /*) echo "$1" ;; *) echo "$here/$1" ;; esac; }
 extra=()
 out=
+programs=(weir)
 while [ $# -gt 0 ]; do
   case "$1" in
     --scene)
       [ $# -ge 2 ] || fail "--scene needs a file"
       [ -f "$2" ] || fail "no scene at '$2'"
       extra+=("$(absolute "$2")"); shift 2 ;;
+    --oracle) programs+=(oracle); shift ;;
     -h | --help) usage; exit 0 ;;
     -*) fail "'$1' is not known; $(usage)" ;;
     *) [ -z "$out" ] || fail "one OUTDIR, not '$out' and '$1'"; out=$(absolute "$1"); shift ;;
@@ -28,19 +31,20 @@ if [ -e "$out" ] && [ ! -f "$out/.weir-bundle" ]; then fail "'$out' exists and i
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 tools/build.sh weir_app
+[ ${#programs[@]} -eq 1 ] || tools/build.sh oracle
 from=build/release/bin
 
 rm -rf "$out"
 mkdir -p "$out/bin" "$out/lib/runtime" "$out/lib/loader" "$out/scenes"
 touch "$out/.weir-bundle"
-cp "$from/weir" "$from"/libweir*.so "$from"/weir_*.json "$out/bin/"
+cp "${programs[@]/#/$from/}" "$from"/libweir*.so "$from"/weir_*.json "$out/bin/"
 cp -rL "$from/shaders" "$out/bin/"
 cp -r graphs LICENSE "$out/"
 cp scenes/*.glb ${extra[@]+"${extra[@]}"} "$out/scenes/"
 
 # The C library stays the target's own, and so does what its drivers bring.
 is_c_library() { case "$1" in libc.so.* | libm.so.* | libpthread.so.* | libdl.so.* | librt.so.* | libresolv.so.* | ld-linux*) true ;; *) false ;; esac; }
-for binary in "$out"/bin/weir "$out"/bin/*.so; do
+for binary in "${programs[@]/#/$out/bin/}" "$out"/bin/*.so; do
   ldd "$from/$(basename "$binary")"
 done | awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' | sort -u | while read -r name path; do
   if is_c_library "$name"; then continue; fi
@@ -50,13 +54,13 @@ done | awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }' | sort -u | while read -r
     *) cp -L "$path" "$out/lib/$name" ;;
   esac
 done
-loader=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p | awk '$1 == "libvulkan.so.1" && /x86-64/ { print $NF; exit }')
+loader=$(PATH=$PATH:/sbin:/usr/sbin ldconfig -p | awk '$1 == "libvulkan.so.1" && /x86-64/ && !found++ { print $NF }')
 cp -L "$loader" "$out/lib/loader/libvulkan.so.1"
 
-binaries=("$out/bin/weir" "$out"/bin/*.so "$out"/lib/*.so* "$out"/lib/*/*.so*)
+binaries=("${programs[@]/#/$out/bin/}" "$out"/bin/*.so "$out"/lib/*.so* "$out"/lib/*/*.so*)
 chmod u+w "${binaries[@]}"
 strip --strip-unneeded "${binaries[@]}"
-for file in "$out/bin/weir" "$out"/bin/*.so; do patchelf --set-rpath '$ORIGIN:$ORIGIN/../lib' "$file"; done
+for file in "${programs[@]/#/$out/bin/}" "$out"/bin/*.so; do patchelf --set-rpath '$ORIGIN:$ORIGIN/../lib' "$file"; done
 for file in "$out"/lib/*.so*; do patchelf --set-rpath '$ORIGIN' "$file"; done
 
 newest() { objdump -T "$@" 2>/dev/null | grep -oE "$pattern" | sort -uV | tail -n 1; }

@@ -10,8 +10,9 @@ BASE=(
   build-essential cmake ninja-build ccache git pkg-config clang-format clang-tidy lld
   libvulkan-dev libvulkan1 libvulkan-volk-dev vulkan-validationlayers spirv-headers spirv-tools
   glslang-dev glslang-tools libglm-dev libtinygltf-dev libstb-dev libopencolorio-dev libopenexr-dev libpng-dev
-  libdraco-dev libmeshoptimizer-dev
+  libdraco-dev libmeshoptimizer-dev libembree-dev
   nlohmann-json3-dev libcli11-dev libfmt-dev libgtest-dev libbenchmark-dev python3 python3-jsonschema patchelf
+  openimageio-tools
 )
 # Mesa of plain Debian 12 (22.3) has no ray tracing in its software device; the one in backports has.
 BACKPORTS=(mesa-vulkan-drivers)

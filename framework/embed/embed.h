@@ -105,6 +105,7 @@ typedef struct WeirSceneInfo {
   uint32_t animate;                            /* not 0: frame i shows the clip at startTime + i * timeStep */
   const char* clip;                            /* NULL: the first */
   double startTime, timeStep;                  /* seconds */
+  uint32_t energyCompensation;                 /* not 0: as `weir render --energy-compensation` */
 } WeirSceneInfo;
 
 /* Lines: what of the file was left out or mended. */

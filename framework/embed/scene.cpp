@@ -17,6 +17,7 @@ render::StageOptions stageOptions(const WeirSceneInfo& info) {
   o.environmentScale = info.environmentScale == 0.0f ? 1.0f : info.environmentScale;
   o.environmentRotation = info.environmentRotation;
   o.camera = text(info.camera);
+  o.energyCompensation = info.energyCompensation != 0;
   o.animate = info.animate != 0;
   o.clip = text(info.clip);
   o.time = info.startTime;

@@ -99,6 +99,8 @@ std::string previousDeclarations(const SceneParts& parts, const scene::SceneTrai
 
 std::string sceneDeclarations(const SceneParts& parts, uint32_t textures, const scene::SceneTraits& traits) {
   std::string s;
+  if (traits.energyCompensation)  // of the BSDF, wherever that is evaluated
+    s += buffer(scene::kBindSpecularAlbedo, "readonly", "float", "sceneSpecularAlbedo");
   if (parts.geometry) {
     s += "#define NEED_SCENE_GEOMETRY 1\n#define sceneInstanceCount frameBlock.instances\n";
     s += "#define sceneDiameter frameBlock.diameter\n#define sceneNear frameBlock.nearPlane\n";

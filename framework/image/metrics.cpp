@@ -184,7 +184,7 @@ TileSummary compareTiles(const Picture& test, const Picture& reference, uint32_t
 
 std::vector<std::string> attributeConflicts(const Picture& test, const Picture& reference) {
   std::vector<std::string> conflicts;
-  for (const char* name : {"weir.scene", "weir.animation", "weir.camera", "weir.lights"}) {
+  for (const char* name : {"weir.scene", "weir.animation", "weir.camera", "weir.lights", "weir.shading"}) {
     const auto a = test.attributes.find(name), b = reference.attributes.find(name);
     if (a == test.attributes.end() || b == reference.attributes.end() || a->second == b->second) continue;
     conflicts.push_back(fmt::format("{}: '{}' here, '{}' in the reference", name, a->second, b->second));

@@ -67,8 +67,9 @@ struct TileSummary {
 /// dominating. Throws InputError as measure() does, and for side 0.
 TileSummary compareTiles(const Picture& test, const Picture& reference, uint32_t side, const Picture* mask = nullptr);
 
-/// Where both pictures have one of the attributes weir.scene, weir.camera, weir.lights and its values differ: one line
-/// each with the name and both values. Such pictures show different things, and their difference says nothing.
+/// Where both pictures have one of the attributes weir.scene, .animation, .camera, .lights, .shading and its values
+/// differ: one line each with the name and both values. Such pictures show different things, and their difference says
+/// nothing.
 std::vector<std::string> attributeConflicts(const Picture& test, const Picture& reference);
 
 }  // namespace weir::image

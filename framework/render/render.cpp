@@ -92,6 +92,7 @@ std::map<std::string, std::string> header(const RenderOptions& o, const Stage& s
   h["weir.scene"] = stage.sceneLabel;
   h["weir.camera"] = stage.cameraLabel;
   h["weir.lights"] = stage.lightsLabel;
+  h["weir.shading"] = stage.shadingLabel;
   h["weir.animation"] = animationOf(o, stage);
   h["weir.graph"] = fmt::format("{} ({})", graph.name, std::filesystem::path(o.graph).filename().string());
   std::string params;
@@ -100,6 +101,7 @@ std::map<std::string, std::string> header(const RenderOptions& o, const Stage& s
   }
   h["weir.params"] = params;
   h["weir.seed"] = std::to_string(o.seed);
+  h["weir.restarts"] = std::to_string(o.restarts);
   h["weir.size"] = fmt::format("{}x{}", o.width, o.height);
   h["weir.frames"] =
       fmt::format("{} from {}, mean of last {}, {} restarts", o.frames, o.firstFrame, o.average, o.restarts);

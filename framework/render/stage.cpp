@@ -102,11 +102,13 @@ Stage makeStage(const StageOptions& options, float aspect) {
   const auto environment = std::chrono::steady_clock::now();
   addEnvironment(options, s);
   s.environmentSeconds = secondsSince(environment);
+  s.scene.energyCompensation = options.energyCompensation;
   s.playback = choosePlayback(options, s.scene);
   const auto prepare = std::chrono::steady_clock::now();
   const scene::Clip* clip = s.playback ? &s.scene.clips[s.playback->clip] : nullptr;
   s.prepared = scene::prepareScene(s.scene, {}, clip);
   s.prepareSeconds = secondsSince(prepare);
+  s.shadingLabel = s.prepared.traits.energyCompensation ? "glTF 2.0 with energy compensation" : "glTF 2.0";
   std::optional<scene::Bounds> bounds;
   if (clip != nullptr && options.camera.empty() && s.scene.cameras.empty())
     bounds = scene::clipBounds(s.scene, s.prepared, *clip);

@@ -21,8 +21,9 @@ struct StageOptions {
   std::string environment;     ///< file, .exr or .hdr; empty: none
   float environmentScale = 1.0f, environmentRotation = 0.0f;  ///< degrees about +Y, counter-clockwise from above
   std::string camera;                                         ///< as `--camera`
-  bool animate = false;                      ///< `--animate`: frame i shows the clip at time + i · timeStep
-  std::string clip;                          ///< name or number; empty: the first
+  bool energyCompensation = false;  ///< of specular lobes, for light reflected more than once (docs/materials.md)
+  bool animate = false;             ///< `--animate`: frame i shows the clip at time + i · timeStep
+  std::string clip;                 ///< name or number; empty: the first
   double time = 0.0, timeStep = 1.0 / 60.0;  ///< seconds
 };
 
@@ -41,6 +42,7 @@ struct Stage {
   std::string sceneLabel;   ///< file name and content hash: tells pictures of different scenes apart
   std::string lightsLabel;  ///< "scene" or "500 points, seed 1"; then the environment's name and content hash
   std::string cameraLabel;
+  std::string shadingLabel;          ///< by which model surfaces reflect
   std::optional<Playback> playback;  ///< none: the scene stays at rest
   scene::ImportTimes importTimes;
   double environmentSeconds = 0.0, prepareSeconds = 0.0;

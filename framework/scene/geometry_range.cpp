@@ -43,13 +43,14 @@ uint32_t GeometryRange::addVertex(const glm::vec3& position, const glm::vec3& no
 void GeometryRange::addExtras(const Primitive& primitive, uint32_t i) {
   if (scene_.traits.vertexColors) {
     const glm::vec4 c = primitive.colors.empty() ? glm::vec4(1.0f) : primitive.colors[i];
+    const glm::vec3 root = glm::sqrt(glm::max(glm::vec3(c), 0.0f));
     const auto pack = [](float low, float high) {
       const auto code = [](float v) {
         return static_cast<uint32_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 65535.0f));
       };
       return code(low) | (code(high) << 16);
     };
-    colors_.push_back({pack(c.r, c.g), pack(c.b, c.a)});
+    colors_.push_back({pack(root.r, root.g), pack(root.b, c.a)});
   }
   if (scene_.traits.uvSets) uvs1_.push_back(primitive.uv1.empty() ? glm::vec2(0.0f) : primitive.uv1[i]);
 }

@@ -1,4 +1,5 @@
 #include <weir/scene/prepare_materials.h>
+#include <weir/scene/specular_albedo.h>
 
 #include <algorithm>
 
@@ -74,6 +75,20 @@ bool hasOwnSpecular(const Material& m) {
           m.specularColorTexture);
 }
 
+/// Whether any light at all can meet its specular lobe head on: with F0 = 0 compensation changes nothing.
+bool hasF0(const Material& m) {
+  if (m.model == MaterialModel::Unlit) return false;
+  const bool color = m.specularColor != glm::vec3(0.0f);
+  if (m.model == MaterialModel::SpecularGlossiness) return color;
+  return m.metallic > 0.0f || (m.ior != 1.0f && m.specular > 0.0f && color);
+}
+
+bool usesDefaultMaterial(const Scene& scene) {
+  return std::ranges::any_of(scene.meshes, [](const Mesh& mesh) {
+    return std::ranges::any_of(mesh.primitives, [](const Primitive& p) { return p.material < 0; });
+  });
+}
+
 }  // namespace
 
 void prepareMaterials(const Scene& scene, PreparedScene& prepared) {
@@ -81,11 +96,15 @@ void prepareMaterials(const Scene& scene, PreparedScene& prepared) {
   for (const Material& m : scene.materials) {
     traits.specularGlossiness |= m.model == MaterialModel::SpecularGlossiness;
     traits.dielectricSpecular |= hasOwnSpecular(m);
+    traits.blend |= m.alphaMode == AlphaMode::Blend;
     traits.unlit |= m.model == MaterialModel::Unlit;
     traits.f90 |= m.model == MaterialModel::Unlit || (hasOwnSpecular(m) && (m.specular != 1.0f || m.specularTexture));
     prepared.materials.push_back(packMaterial(scene, m, prepared));
   }
   prepared.materials.push_back(packMaterial(scene, Material{}, prepared));
+  traits.energyCompensation =
+      scene.energyCompensation && (usesDefaultMaterial(scene) || std::ranges::any_of(scene.materials, hasF0));
+  if (traits.energyCompensation) prepared.specularAlbedo = specularAlbedoTable();
   if (!traits.specularGlossiness && !traits.dielectricSpecular) return;
   for (const Material& m : scene.materials) prepared.speculars.push_back(packSpecular(scene, m, prepared));
   prepared.speculars.push_back(packSpecular(scene, Material{}, prepared));

@@ -160,7 +160,8 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<PunctualLight> lights;
-  Environment environment;  ///< not the file's: `--environment`
+  Environment environment;          ///< not the file's: `--environment`
+  bool energyCompensation = false;  ///< nor is this: `--energy-compensation`
   std::vector<Camera> cameras;
   std::vector<std::string> warnings;  ///< what the importer left out or mended, once each
   std::vector<Node> nodes;            ///< all of the file's, whether or not its scene shows them

@@ -10,6 +10,7 @@ std::string traitDefines(const SceneTraits& traits) {
   define(traits.texturedLights, "TEXTURED_LIGHTS");
   define(traits.triangleLights, "TRIANGLE_LIGHTS");
   define(traits.alphaLights, "ALPHA_LIGHTS");
+  define(traits.blend, "BLEND");
   define(traits.vertexColors, "VERTEX_COLORS");
   define(traits.uvSets, "UV_SETS");
   define(traits.uvTransforms, "UV_TRANSFORMS");
@@ -19,6 +20,7 @@ std::string traitDefines(const SceneTraits& traits) {
   define(traits.unlit, "UNLIT");
   define(traits.f90, "F90");
   define(traits.environment, "ENVIRONMENT");
+  define(traits.energyCompensation, "ENERGY_COMPENSATION");
   define(traits.animated, "ANIMATED");
   define(traits.deforms, "DEFORMS");
   return lines;

@@ -11,6 +11,7 @@ struct SceneTraits {
   bool texturedLights = false;  ///< SCENE_TEXTURED_LIGHTS: some emissive triangle's radiance varies with its texture
   bool triangleLights = false;  ///< SCENE_TRIANGLE_LIGHTS: some light is an emissive triangle
   bool alphaLights = false;     ///< SCENE_ALPHA_LIGHTS: some emissive triangle's coverage varies over it
+  bool blend = false;           ///< SCENE_BLEND: some material blends, so that rays may come through in part
   bool vertexColors = false;    ///< SCENE_VERTEX_COLORS: some triangle's base colour is scaled by its vertices'
   bool uvSets = false;          ///< SCENE_UV_SETS: some texture is read at the second set of coordinates
   bool uvTransforms = false;    ///< SCENE_UV_TRANSFORMS: some texture's coordinates are transformed
@@ -20,6 +21,7 @@ struct SceneTraits {
   bool unlit = false;               ///< SCENE_UNLIT: some material shows its base colour as it is
   bool f90 = false;                 ///< SCENE_F90: some surface reflects less than all light at grazing angles
   bool environment = false;         ///< SCENE_ENVIRONMENT: light from all around, scene/environment.h
+  bool energyCompensation = false;  ///< SCENE_ENERGY_COMPENSATION: asked for, and some surface has a specular lobe
   bool animated = false;  ///< SCENE_ANIMATED: instances, lights and acceleration structure differ from last frame's
   bool deforms = false;   ///< SCENE_DEFORMS: so do vertex positions (skins, morph targets); implies animated
   bool operator==(const SceneTraits&) const = default;

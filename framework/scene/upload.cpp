@@ -82,6 +82,7 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   colors_ = gpu::uploadBuffer(device, prepared.colors, kStorage, "scene vertex colours");
   uvs1_ = gpu::uploadBuffer(device, prepared.uvs1, kStorage, "scene texture coordinates 1");
   speculars_ = gpu::uploadBuffer(device, prepared.speculars, kStorage, "scene specular materials");
+  specularAlbedo_ = gpu::uploadBuffer(device, prepared.specularAlbedo, kStorage, "scene specular albedo");
   uploadTextures(scene, prepared);
   if (prepared.traits.environment) environment_ = EnvironmentGpu(device, scene.environment, prepared.environment);
   const auto start = std::chrono::steady_clock::now();
@@ -109,7 +110,7 @@ SceneGpu::~SceneGpu() {
 uint64_t SceneGpu::bytes() const {
   uint64_t sum = acceleration_.bytes() + environment_.bytes();
   for (const gpu::Buffer* b : {&positions_, &vertices_, &triangles_, &instances_, &materials_, &lights_, &alias_,
-                               &lightOfTriangle_, &colors_, &uvs1_, &speculars_, &textureUses_}) {
+                               &lightOfTriangle_, &colors_, &uvs1_, &speculars_, &textureUses_, &specularAlbedo_}) {
     sum += b->size();
   }
   for (const gpu::Image& image : images_) sum += image.bytes();
@@ -166,7 +167,7 @@ VkDescriptorSet SceneGpu::makeSet(const gpu::Buffer& frameConstants, uint64_t sl
   std::array<VkBuffer, kOwn + 3> handles = {
       positions_.handle(), vertices_.handle(),    triangles_.handle(),       instances_.handle(), materials_.handle(),
       lights_.handle(),    alias_.handle(),       lightOfTriangle_.handle(), colors_.handle(),    uvs1_.handle(),
-      speculars_.handle(), textureUses_.handle(), rayCounter.handle()};
+      speculars_.handle(), textureUses_.handle(), specularAlbedo_.handle(),  rayCounter.handle()};
   VkAccelerationStructureKHR top = acceleration_.top();
   uint32_t count = kOwn;
   if (moving != nullptr) {

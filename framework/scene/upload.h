@@ -27,6 +27,7 @@ enum SceneBinding : uint32_t {
   kBindUvs1,             ///< with uvSets
   kBindSpeculars,        ///< with one of the specular traits
   kBindTextureUses,      ///< with uvSets, uvTransforms or mipmaps
+  kBindSpecularAlbedo,   ///< with energyCompensation
   kBindRays,             ///< ray counter
   kBindAcceleration,     ///< only on devices with acceleration structures
   kBindEnvironment,      ///< its table; only in scenes that have one, as the next
@@ -116,7 +117,7 @@ class SceneGpu {
   const PreparedScene* prepared_;
   bool withAcceleration_;
   gpu::Buffer positions_, vertices_, triangles_, instances_, materials_, lights_, alias_, lightOfTriangle_, colors_,
-      uvs1_, speculars_, textureUses_;
+      uvs1_, speculars_, textureUses_, specularAlbedo_;
   struct Texture {
     uint32_t image;
     VkSampler sampler;

@@ -9,7 +9,8 @@
 namespace weir::passes {
 
 /// The first visible surface of a pixel: 24 bytes, what neighbour tests need in the first 16. distance 0: nothing was
-/// hit.
+/// hit. What is rounded, but for the geometric normal, is rounded up or down at random by pixel, frame and seed, so
+/// that its mean is what it was (shaders/common/rounding.glsl).
 struct PackedSurface {
   float distance;            ///< along the ray, metres
   uint32_t geometricNormal;  ///< octahedral 2 × snorm16, faces the viewer

@@ -11,6 +11,12 @@ void Initial::describe(PassDescription& d) {
   d.param("bsdfCandidates", 1)
       .range(0, 64)
       .doc("In scenes with an environment: directions by the BSDF that each pixel looks at, too, for what is glossy");
+  d.param("bsdfRays", 0)
+      .range(0, 64)
+      .doc(
+          "Rays by the BSDF that each pixel shoots: lights that they meet are candidates, too. Hidden lights are found "
+          "by "
+          "the others alone, so that unbiased reuse needs its visibilityRays then");
   d.param("samples", 1).range(1, 4).doc("Reservoirs a pixel; they share the candidates");
   d.param("uniformShare", 0.1f)
       .range(0, 1)
@@ -24,7 +30,7 @@ void Initial::describe(PassDescription& d) {
           "How a point on an emissive triangle is drawn: by area, or by solid angle where it is close for its size (no "
           "fireflies close to it)");
   d.param("lobeShare", 0.25f)
-      .range(0, 0.9f)
+      .range(0, 0.9)
       .doc(
           "On surfaces with α below 0.25: share of the points on emissive triangles that are looked for along the "
           "specular lobe (no fireflies in reflections)");
@@ -36,7 +42,10 @@ void Initial::describe(PassDescription& d) {
 }
 
 void Initial::prepare(PrepareContext& c) {
-  kernel_ = c.boolean("visibility") ? c.rayKernel("initial.glsl") : c.kernel("initial.glsl");
+  KernelOptions options;
+  const bool rays = c.integer("bsdfRays") > 0;
+  if (rays) options.defines.emplace_back("BSDF_RAYS", "1");
+  kernel_ = rays || c.boolean("visibility") ? c.rayKernel("initial.glsl", options) : c.kernel("initial.glsl", options);
 }
 
 void Initial::record(RecordContext& c) {

@@ -10,12 +10,14 @@ namespace weir::passes {
 void describeReuse(PassDescription& d) {
   d.param("mis", "pairwise")
       .oneOf({"biased", "z", "balance", "pairwise"})
+      .specialises()
       .doc(
           "MIS weights: biased (by confidence alone, darkens at edges), z (by the confidence of those that could have "
           "found the sample), balance (balance heuristic, cost grows with the square of the neighbours) or defensive "
           "pairwise; all but biased are unbiased with visibilityRays in every reuse, or with neither those nor "
           "Initial.visibility");
   d.param("visibilityRays", false)
+      .specialises()
       .doc(
           "Include visibility in the MIS weights and retest the survivor; without, reuse is unbiased only if "
           "Initial.visibility is off and Initial.bsdfRays 0");

@@ -1,4 +1,5 @@
-// glTF 2.0, appendix B: Lambert under GGX with height-correlated Smith shadowing and Schlick's Fresnel term.
+// glTF 2.0, appendix B: Lambert under GGX with height-correlated Smith shadowing and Schlick's Fresnel term. With
+// SCENE_ENERGY_COMPENSATION the specular lobe is scaled by a factor of the view's angle (surface.glsl): reciprocal no longer.
 #ifndef WEIR_BSDF
 #define WEIR_BSDF
 
@@ -45,7 +46,10 @@ vec3 bsdfCos(Surface s, vec3 l) {
   const vec3 h = normalize(l + s.view);
   const vec3 f = schlick(s, MUTANT(44, nv, dot(s.view, h)));
   const vec3 diffuse = MUTANT(46, vec3(1.0), 1.0 - f) * s.diffuse / kPi;
-  const vec3 specular = f * (ggxD(s.normal, h, s.alpha) * ggxVisibility(nl, nv, s.alpha));
+  vec3 specular = f * (ggxD(s.normal, h, s.alpha) * ggxVisibility(nl, nv, s.alpha));
+#ifdef SCENE_ENERGY_COMPENSATION
+  specular *= s.compensation;
+#endif
   return (diffuse + specular) * nl;
 }
 

@@ -1,5 +1,6 @@
 // Directions drawn nearly in proportion to the BSDF of bsdf.glsl: the specular lobe by the visible normals of GGX (Heitz, "Sampling the
-// GGX Distribution of Visible Normals", JCGT 7(4), 2018), the diffuse one by the cosine.
+// GGX Distribution of Visible Normals", JCGT 7(4), 2018), found by spherical caps (Dupuy and Benyoub, "Sampling Visible GGX Normals
+// with Spherical Caps", HPG 2023), the diffuse one by the cosine.
 #ifndef WEIR_BSDF_SAMPLE
 #define WEIR_BSDF_SAMPLE
 
@@ -16,22 +17,24 @@ mat3 basisAround(vec3 n) {
 // With which probability the specular lobe is drawn from: about its share of what is reflected.
 float specularShare(Surface s) {
   const vec3 f = schlick(s, max(dot(s.normal, s.view), 0.0));
+#ifdef SCENE_ENERGY_COMPENSATION
+  const float specular = luminance(f * s.compensation), diffuse = luminance((1.0 - f) * s.diffuse);
+#else
   const float specular = luminance(f), diffuse = luminance((1.0 - f) * s.diffuse);
+#endif
   return specular + diffuse > 0.0 ? specular / (specular + diffuse) : 0.0;
 }
 
-// Unit direction by the specular lobe alone. It may lie below the surface, where bsdfCos() is zero.
+// Unit direction by the specular lobe alone. It may lie below the surface, where bsdfCos() is zero. Scaled by 1/α along the surface, the
+// lobe's normals are those of a half sphere; a mirror half sphere sends the view into a uniformly lit cap, from -v.z up to the pole.
 vec3 sampleSpecular(Surface s, vec2 u) {
   const mat3 world = basisAround(s.normal);
-  const float angle = 2.0 * kPi * u.y;
   const vec3 view = s.view * world;
   const vec3 v = normalize(vec3(s.alpha * view.xy, max(view.z, 0.0)));
-  const float across = dot(v.xy, v.xy);
-  const vec3 t1 = across > 0.0 ? vec3(-v.y, v.x, 0.0) * inversesqrt(across) : vec3(1.0, 0.0, 0.0), t2 = cross(v, t1);
-  const float r = sqrt(u.x), p1 = r * cos(angle), share = 0.5 * (1.0 + v.z);
-  const float p2 = mix(sqrt(1.0 - p1 * p1), r * sin(angle), share);
-  const vec3 n = p1 * t1 + p2 * t2 + sqrt(max(0.0, 1.0 - p1 * p1 - p2 * p2)) * v;
-  const vec3 h = normalize(world * vec3(s.alpha * n.xy, max(n.z, 0.0)));
+  // Height 1 - down on the sphere; its sum with v.z, written so that it stays above 0.
+  const float down = u.x * (1.0 + v.z), height = max(1.0 - u.x, 1.0 / 16777216.0) * (1.0 + v.z), angle = 2.0 * kPi * u.y;
+  const vec2 across = sqrt(down * (2.0 - down)) * vec2(cos(angle), sin(angle));
+  const vec3 h = normalize(world * vec3(s.alpha * (across + v.xy), height));
   return normalize(2.0 * dot(s.view, h) * h - s.view);
 }
 

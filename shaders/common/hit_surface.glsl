@@ -3,6 +3,7 @@
 #define WEIR_HIT_SURFACE
 
 #include "material.glsl"
+#include "rounding.glsl"
 #include "scene.glsl"
 #include "surface.glsl"
 #include "trace_types.glsl"
@@ -21,6 +22,9 @@ struct HitSurface {
   float distance;
   float error;  // bound on the error of `position` by floating point, metres
 };
+
+// What the 16 + 16 bits of a vertex's normal may be off by, radians.
+const float kVertexNormalError = 7e-5;
 
 // Which texels a surface shows: those of a pixel, for camera rays, or level 0 for everything further along a path.
 const bool kPixelTexels = true, kBaseTexels = false;
@@ -59,6 +63,10 @@ HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, bool texels) {
   const Vertex v0 = sceneVertices[t.x], v1 = sceneVertices[t.y], v2 = sceneVertices[t.z];
   vec3 n = cofactor * (b.x * unpackNormal(v0.normal) + b.y * unpackNormal(v1.normal) + b.z * unpackNormal(v2.normal));
   n = dot(n, n) > 0.0 ? normalize(n) : geometric;
+  // A flat triangle's normal is its plane's: rounded at the vertices, it would be off the same way everywhere, and light that grazes
+  // it by as much as that times tan θ.
+  const vec3 off = cross(n, geometric);
+  if (dot(off, off) < kVertexNormalError * kVertexNormalError && dot(n, geometric) > 0.0) n = geometric;
 #ifdef SCENE_MIPMAPS
   Lookup at;
   if (texels == kPixelTexels) at = lookupAt(t, Corners(p0, p1, p2), hit, origin, direction);
@@ -101,15 +109,17 @@ HitSurface surfaceAt(Hit hit, vec3 origin, vec3 direction, bool texels) {
   return r;
 }
 
-// `jitter` 0 … 254 a side: where in its pixel the ray was shot (127: the centre).
-PackedSurface packSurface(HitSurface s, uvec2 jitter) {
+// `jitter` 0 … 254 a side: where in its pixel the ray was shot (127: the centre). All that is rounded, but for the geometric normal, is
+// rounded by uniform numbers.
+PackedSurface packSurface(HitSurface s, uvec2 jitter, Rounding u) {
+  const uint roughness = packRoughness(s.reflection.roughness, s.reflection.f90, vec2(u.roughness, u.f90));
   PackedSurface p;
   p.distance = s.distance;
   p.geometricNormal = packNormal(s.geometricNormal);
-  p.shadingNormal = packNormal(s.normal);
-  p.diffuse = packAlbedo(s.reflection.diffuse);
-  p.specular = packAlbedo(s.reflection.f0);
-  p.roughnessJitter = jitter.x | (jitter.y << 8u) | (packRoughness(s.reflection.roughness, s.reflection.f90) << 16u);
+  p.shadingNormal = packNormalBy(s.normal, u.normal);
+  p.diffuse = packAlbedo(s.reflection.diffuse, u.diffuse);
+  p.specular = packAlbedo(s.reflection.f0, u.specular);
+  p.roughnessJitter = jitter.x | (jitter.y << 8u) | (roughness << 16u);
   return p;
 }
 
@@ -129,6 +139,7 @@ Surface surfaceFrom(HitSurface hit, vec3 direction) {
   s.alpha = max(roughness * roughness, kSmallestAlpha);
   s.distance = hit.distance;
   s.error = hit.error;
+  finishSurface(s);
   return s;
 }
 

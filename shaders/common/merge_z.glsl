@@ -1,29 +1,30 @@
 // By the confidence of the domains that contain the sample: m_i(y) = c_i / Z(y), Z(y) = Σ c_j over j with p̂_j(y) > 0 (Bitterli et al.
-// 2020, algorithm 6). Only the survivor needs its Z: the choice goes by c_i p̂ W, what was chosen is divided by Z after.
+// 2020, algorithm 6). Only the survivor needs its Z: the choice goes by confidence alone, and what was chosen makes up for it after.
 Reservoir merge(Surface surface, Reservoir own) {
   const uint count = neighbourCount();
-  float total = 0.0;
+  float others = 0.0;
+  for (uint i = 0u; i < count; ++i) others += neighbourReservoir(i).confidence;
+  const float total = own.confidence + others;
   Selection selection = noSelection();
   uint from = count;  // whose sample was chosen; `count`: the own one
   bool seenThere = false;
   for (uint i = 0u; i < count; ++i) {
     const Reservoir r = neighbourReservoir(i);
     const float chance = nextChance();
-    total += r.confidence;
     if (isNull(r)) continue;
     const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
     const float target = targetFunction(surface, here);
-    const float weight = r.confidence * target * weightHere(r, here);
-    if (target > 0.0 && offer(selection, lightOf(r), r.place, target, weight, false, chance)) {
+    if (!(target > 0.0)) continue;
+    const float weight = r.confidence / total * target * weightHere(r, here);
+    if (offer(selection, lightOf(r), r.place, target, weight, false, chance)) {
       from = i;
       seenThere = isSeen(r);
     }
   }
-  total += own.confidence;
   const float chance = nextChance();
   if (!isNull(own)) {
     const float target = targetFunction(surface, evaluateLight(lightOf(own), own.place, surface.position));
-    const float weight = own.confidence * target * own.weight;
+    const float weight = own.confidence / total * target * own.weight;
     if (offer(selection, lightOf(own), own.place, target, weight, isSeen(own), chance)) from = count;
   }
   Reservoir merged = finishMerge(selection, surface, total);
@@ -40,6 +41,6 @@ Reservoir merge(Surface surface, Reservoir own) {
       if (MUTANT(25, false, MUTANT(7, false, true))) return nullReservoir(total);
     }
   }
-  merged.weight /= z;
+  merged.weight *= total / z;
   return merged;
 }

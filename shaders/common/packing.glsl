@@ -24,10 +24,33 @@ vec4 unpackTangent(uint bits) {
 
 uint packTangent(vec4 t) { return (packNormal(t.xyz) & 0xfffeffffu) | (t.w < 0.0 ? 0x10000u : 0u); }
 
-// Albedo in 11 + 11 + 10 bits, spaced by square roots: fine steps where it is dark.
-uint packAlbedo(vec3 c) {
-  const vec3 s = sqrt(clamp(c, 0.0, 1.0));
-  return uint(s.x * 2047.0 + 0.5) | (uint(s.y * 2047.0 + 0.5) << 11u) | (uint(s.z * 1023.0 + 0.5) << 22u);
+// The code above or below x >= 0, whichever the uniform number u in [0, 1) says, so that the mean over u is x: nothing is gained or
+// lost however many pixels and frames come together. u = 1/2 rounds to the nearest. Whole numbers stay what they are.
+uint roundBy(float x, float u) {
+  const float low = floor(x);
+  return uint(low) + (u < x - low ? 1u : 0u);
+}
+
+// The same for codes k that stand for (k / steps)²: between neighbours the mean is linear in the probability, which is therefore that of
+// the squares. (Rounding the root so that its own mean is kept would add the variance of the root to the value.)
+uint roundRootBy(float value, float steps, float u) {
+  const float x = clamp(value, 0.0, 1.0), low = min(floor(sqrt(x) * steps), steps);
+  return uint(low) + (u < (x * steps * steps - low * low) / (2.0 * low + 1.0) ? 1u : 0u);
+}
+
+// Octahedral, with each coordinate rounded by a uniform number.
+uint packNormalBy(vec3 n, vec2 u) {
+  vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+  if (n.z < 0.0) p = (1.0 - abs(p.yx)) * signNotZero(p);
+  p = clamp(p, -1.0, 1.0) * 32767.0;
+  const vec2 low = floor(p);
+  const ivec2 code = ivec2(low) + ivec2(lessThan(u, p - low));
+  return (uint(code.x) & 0xffffu) | (uint(code.y) << 16u);
+}
+
+// Albedo in 11 + 11 + 10 bits, spaced by square roots: fine steps where it is dark. Each channel is rounded by a uniform number.
+uint packAlbedo(vec3 c, vec3 u) {
+  return roundRootBy(c.x, 2047.0, u.x) | (roundRootBy(c.y, 2047.0, u.y) << 11u) | (roundRootBy(c.z, 1023.0, u.z) << 22u);
 }
 
 vec3 unpackAlbedo(uint bits) {

@@ -74,7 +74,11 @@ vec4 sampleTexture(int texture, Coordinates c) {
 }
 
 #ifdef SCENE_VERTEX_COLORS
-vec4 vertexColor(uint v) { return vec4(unpackUnorm2x16(sceneColors[v].x), unpackUnorm2x16(sceneColors[v].y)); }
+// Colours are stored as their square roots, alpha as it is.
+vec4 vertexColor(uint v) {
+  const vec4 c = vec4(unpackUnorm2x16(sceneColors[v].x), unpackUnorm2x16(sceneColors[v].y));
+  return vec4(c.rgb * c.rgb, c.a);
+}
 
 vec4 colorAt(uvec4 triangle, vec2 barycentrics) {
   const vec4 a = vertexColor(triangle.x);

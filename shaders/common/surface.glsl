@@ -16,6 +16,9 @@ struct Surface {
 #ifdef SCENE_F90
   float f90;  // reflectance at grazing angles; 1 where scenes lack the trait
 #endif
+#ifdef SCENE_ENERGY_COMPENSATION
+  vec3 compensation;  // of the specular lobe, 1 and more
+#endif
   float alpha;  // GGX α = roughness²
   float distance;
   float error;  // bound on the error of `position` by floating point, metres
@@ -35,12 +38,37 @@ float positionError(vec3 position, vec3 origin, float distance) {
   return (max(largest.x, max(largest.y, largest.z)) + distance) * (8.0 / 8388608.0);
 }
 
-// Roughness in 16 bits; where surfaces differ in F90, roughness in 10 and that in 6.
-uint packRoughness(float roughness, float f90) {
+// Roughness in 16 bits; where surfaces differ in F90, roughness in 10 and that in 6. Rounded by uniform numbers.
+uint packRoughness(float roughness, float f90, vec2 u) {
 #ifdef SCENE_F90
-  return (uint(clamp(roughness, 0.0, 1.0) * 1023.0 + 0.5) << 6u) | uint(clamp(f90, 0.0, 1.0) * 63.0 + 0.5);
+  return (roundBy(clamp(roughness, 0.0, 1.0) * 1023.0, u.x) << 6u) | roundBy(clamp(f90, 0.0, 1.0) * 63.0, u.y);
 #else
-  return uint(clamp(roughness, 0.0, 1.0) * 65535.0 + 0.5);
+  return roundBy(clamp(roughness, 0.0, 1.0) * 65535.0, u.x);
+#endif
+}
+
+#ifdef SCENE_ENERGY_COMPENSATION
+// E: what the specular lobe reflects of light from all around (or, seen the other way, of a ray) without absorption; at most 7.2e-4
+// of it off. The table and its coordinates: framework/scene/specular_albedo.h.
+float specularAlbedo(float nv, float alpha) {
+  const float x = 63.0 * sqrt(clamp(nv * (1.0 + alpha) / (nv + alpha), 0.0, 1.0)), y = 31.0 * alpha;
+  const uint column = min(uint(x), 62u), row = min(uint(y), 30u), at = 64u * row + column;
+  const float low = mix(sceneSpecularAlbedo[at], sceneSpecularAlbedo[at + 1u], x - float(column));
+  const float high = mix(sceneSpecularAlbedo[at + 64u], sceneSpecularAlbedo[at + 65u], x - float(column));
+  return mix(low, high, y - float(row));
+}
+#endif
+
+// What follows from the rest of a surface. Everything that makes one calls this last.
+void finishSurface(inout Surface s) {
+  // Rounding may have turned the normal away again, where densities that rest on n·v = 0 would not be those of what is sampled.
+  const float nv = dot(s.normal, s.view);
+  if (nv < 0.0) s.normal = normalize(s.normal - nv * s.view);
+#ifdef SCENE_ENERGY_COMPENSATION
+  // Turquin 2019, eq. 16: the light that the lobe loses comes back with F0 for what each further reflection keeps of it. F0 and not
+  // an average over angles: without absorption it is exact, else a little dark, never more than was lost.
+  const float albedo = specularAlbedo(max(nv, 0.0), s.alpha);
+  s.compensation = 1.0 + s.f0 * ((1.0 - albedo) / albedo);
 #endif
 }
 
@@ -65,6 +93,7 @@ Surface unpackSurface(PackedSurface p, uvec2 pixel, Camera camera, vec2 size) {
 #endif
   s.alpha = max(roughness * roughness, kSmallestAlpha);
   s.error = positionError(s.position, camera.origin.xyz, p.distance);
+  finishSurface(s);
   return s;
 }
 

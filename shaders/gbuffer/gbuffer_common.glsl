@@ -22,7 +22,7 @@ void writePixel(uvec2 pixel, Hit hit, vec3 direction, uvec2 jitter) {
     before = cameraProject(previousCamera, previousCamera.origin.xyz + direction, frameSize);
   } else {
     const HitSurface s = surfaceAt(hit, camera.origin.xyz, direction, kPixelTexels);
-    out_surface[index] = packSurface(s, jitter);
+    out_surface[index] = packSurface(s, jitter, roundingFor(pixel));
     imageStore(out_emission, ivec2(pixel), vec4(s.emission, 1.0));
     before = cameraProject(previousCamera, previousPosition(hit, s.position), frameSize);
   }

@@ -1,6 +1,7 @@
 // Initial candidates by streaming RIS (Talbot et al. 2005; Bitterli et al. 2020, algorithm 3): M lights picked by power, one kept in
-// proportion to p̂/p. The environment is also found by directions that the BSDF prefers, points on triangles along its specular lobe.
-// Several reservoirs of a pixel share the candidates and choose from them independently.
+// proportion to p̂/p. The environment is also found by directions that the BSDF prefers, points on triangles along its specular lobe,
+// and both by rays along the BSDF. Several reservoirs of a pixel share the candidates and choose from them independently.
+#include "mutants.glsl"
 #include "random.glsl"
 #include "reservoir.glsl"
 #include "light_sample.glsl"
@@ -26,20 +27,81 @@ Candidate drawCandidate(Light light, uvec2 bits, Surface surface, inout Random r
   return c;
 }
 
-#ifdef SCENE_ENVIRONMENT
-// Both ways to a direction of the environment give it the weight p̂ over the sum of their expected numbers there: the balance heuristic
-// over all candidates of the pixel (Veach 1997; Talbot et al. 2005).
-float environmentWeight(Surface surface, Light environment, LightSample light, float density, float target) {
-  return target / (float(param_candidates) * mixedPdf(environment, param_uniformShare) * density +
-                   float(param_bsdfCandidates) * bsdfDensity(surface, light.direction));
+// All ways to a point give it the weight p̂ over the sum of their expected numbers there: the balance heuristic over all candidates of the
+// pixel (Veach 1997; Talbot et al. 2005). For the environment per steradian, for triangles per m².
+#ifdef BSDF_RAYS
+float triangleWeight(Surface surface, Light light, LightSample at, float density, float target) {
+  return target / (float(param_candidates) * mixedPdf(light, param_uniformShare) * density +
+                   float(param_bsdfRays) * bsdfDensity(surface, at.direction) * MUTANT(32, 1.0, steradianPerArea(light, at, surface.position)));
 }
 #endif
 
-void offerAll(inout Selection selections[out_reservoirs_count], uint light, uint place, float target, float weight,
+#ifdef SCENE_ENVIRONMENT
+float environmentWeight(Surface surface, Light environment, LightSample light, float density, float target) {
+#ifdef BSDF_RAYS
+  const float byBsdf = float(param_bsdfCandidates + param_bsdfRays);
+#else
+  const float byBsdf = float(param_bsdfCandidates);
+#endif
+  return target / (float(param_candidates) * mixedPdf(environment, param_uniformShare) * density +
+                   MUTANT(31, 0.0, byBsdf) * bsdfDensity(surface, light.direction));
+}
+#endif
+
+void offerAll(inout Selection selections[out_reservoirs_count], uint light, uint place, float target, float weight, bool seen,
               inout Random random) {
   const vec4 keep = next4(random);
-  for (uint k = 0u; k < out_reservoirs_count; ++k) offer(selections[k], light, place, target, weight, false, keep[k]);
+  for (uint k = 0u; k < out_reservoirs_count; ++k) offer(selections[k], light, place, target, weight, seen, keep[k]);
 }
+
+#ifdef BSDF_RAYS
+// A ray along the BSDF. What it meets is a candidate if it is a light: an emissive triangle, or the environment where it meets nothing.
+// Its density is that of the direction wherever the light is seen at all: a surface that blends is met, or lets the ray through, with a
+// probability that belongs to this way alone, and is divided out.
+void offerRay(inout Selection selections[out_reservoirs_count], Surface surface, inout Random random) {
+  const uvec4 bits = nextBits4(random);
+  const vec3 direction = sampleBsdf(surface, vec3(uniformFloat(bits.x), uniformFloat(bits.y), uniformFloat(bits.z)));
+  if (!(dot(surface.normal, direction) > 0.0) || !(dot(surface.geometricNormal, direction) > 0.0)) return;
+  const Hit hit = traceClosest(offsetOrigin(surface, direction), direction, 3.0e38, bits.w, kEverySide);
+  uint chosen = kNoLight, place = 0u;
+  LightSample at;
+  float target = 0.0, weight = 0.0;
+  if (hit.triangle != kNoTriangle) {
+    chosen = lightOfTriangle(hit.triangle);
+    if (chosen == kNoLight) return;
+    const Light light = sceneLights[chosen];
+    place = placeAt(turnedBarycentrics(light, hit.barycentrics));
+    at = evaluateLight(light, place, surface.position);
+    target = targetFunction(surface, at);
+    if (!(target > 0.0)) return;
+    const SphericalTriangle t = seenTriangle(light, surface, triangleWays());
+    const float density = triangleDensity(light, at, t, surface, lobeShareOf(triangleWays(), surface));
+    weight = MUTANT(33, target / (float(param_bsdfRays) * bsdfDensity(surface, at.direction) * steradianPerArea(light, at, surface.position)),
+                    triangleWeight(surface, light, at, density, target)) / triangleCoverage(hit.triangle, hit.barycentrics);
+  } else {
+#ifdef SCENE_ENVIRONMENT
+    chosen = lightCount() - 1u;
+    const Light environment = sceneLights[chosen];
+    if ((environment.kind & kKindMask) != kEnvironment) return;
+    place = environmentPlace(direction);
+    at = evaluateEnvironment(place, surface.position);
+    target = targetFunction(surface, at);
+    if (!(target > 0.0)) return;
+    weight = environmentWeight(surface, environment, at, environmentDensity(place), target);
+#else
+    return;
+#endif
+  }
+  bool seen = true;
+#ifdef SCENE_BLEND
+  const float through = traceVisibility(surface, at);
+  if (!(through > 0.0)) return;
+  weight /= through;
+  seen = through >= 1.0;
+#endif
+  offerAll(selections, chosen, place, target, weight, seen, random);
+}
+#endif
 
 void run(uvec2 pixel) {
   const uint index = pixel.y * frameWidth + pixel.x;
@@ -60,13 +122,16 @@ void run(uvec2 pixel) {
       const float target = targetFunction(surface, c.light);
       if (!(target > 0.0)) continue;
       // 1/M · p̂ / p, with p = pdf of the light times density on it.
-      float weight = target * c.spread / (mixedPdf(light, param_uniformShare) * float(param_candidates));
+      float weight = target * c.spread / (mixedPdf(light, param_uniformShare) * float(MUTANT(30, param_candidates + 1, param_candidates)));
+#ifdef BSDF_RAYS
+      if ((light.kind & kKindMask) == kTriangle) weight = triangleWeight(surface, light, c.light, 1.0 / c.spread, target);
+#endif
 #ifdef SCENE_ENVIRONMENT
       if ((light.kind & kKindMask) == kEnvironment) {
         weight = environmentWeight(surface, light, c.light, 1.0 / c.spread, target);
       }
 #endif
-      offerAll(selections, chosen, c.place, target, weight, random);
+      offerAll(selections, chosen, c.place, target, weight, false, random);
     }
 #ifdef SCENE_ENVIRONMENT
     const uint last = lightCount() - 1u;  // where the environment is
@@ -77,8 +142,11 @@ void run(uvec2 pixel) {
       const float target = targetFunction(surface, light);
       if (!(target > 0.0)) continue;
       offerAll(selections, last, place, target,
-               environmentWeight(surface, environment, light, environmentDensity(place), target), random);
+               environmentWeight(surface, environment, light, environmentDensity(place), target), false, random);
     }
+#endif
+#ifdef BSDF_RAYS
+    for (int i = 0; i < param_bsdfRays; ++i) offerRay(selections, surface, random);
 #endif
   }
   for (uint k = 0u; k < out_reservoirs_count; ++k) {

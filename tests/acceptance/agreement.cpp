@@ -1,18 +1,13 @@
-// Do the unbiased settings of restir_di agree with the brute-force reference? A program rather than a test: on a GPU it
-// runs long enough to resolve a bias of some hundredths of a percent. Prints a row a setting and, with --json, writes
-// the raw numbers.
-//   agreement --scene scenes/cornell.glb --size 256 --restarts 256 --frames 4
+// Do the unbiased settings of restir_di agree with the brute-force reference? Several verdicts of `weir verify` over
+// one scene and one reference. A program rather than a test: on a GPU it runs long enough to resolve a bias of some
+// hundredths of a percent. Prints a row a setting and, with --json, writes the raw numbers.
+//   agreement --scene scenes/cornell.glb --size 256 --restarts 256 --frames 4 --modes
 //   agreement --scene scenes/cornell-moving.glb --animate --time 0.3 --time-step 0.1 --size 256 --restarts 256 --frames
 //   6
 #include <fmt/format.h>
-#include <weir/execute/executor.h>
-#include <weir/graph/compile.h>
-#include <weir/image/statistics.h>
-#include <weir/pass/registry.h>
-#include <weir/render/mean.h>
-#include <weir/render/render.h>
+#include <weir/image/verdict.h>
+#include <weir/render/laboratory.h>
 #include <weir/render/write_file.h>
-#include <weir/trace/acceleration.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -28,69 +23,76 @@ struct Words {
   std::string device, trace = "auto", json, graphs = "graphs";
   uint32_t size = 256, restarts = 64, frames = 4, referenceRestarts = 16, referenceSamples = 4, tile = 16, seed = 0;
   std::vector<std::string> set;
+  bool modes = false;
 };
 
-class Laboratory {
- public:
-  explicit Laboratory(const Words& words)
-      : words_(words),
-        registry_(pluginSearchPath({})),
-        stage_(render::makeStage(words.stage, 1.0f)),
-        device_({.choice = words.device}),
-        backend_(trace::chooseBackend(words.trace, device_)),
-        scene_(device_, stage_.scene, stage_.prepared, true) {}
+/// One sample a restart: the mean of its frames, or, where a clip moves the scene, the last one, number words.frames
+/// - 1.
+image::EvidenceCollector collect(const Words& words, render::Laboratory& laboratory, const std::string& graph,
+                                 const graph::Overrides& overrides, uint32_t restarts, uint32_t frames, uint32_t seed) {
+  const bool moves = laboratory.stage().playback.has_value();
+  render::Restarts runs(
+      laboratory, laboratory.compile(words.graphs + "/" + graph, overrides, words.size, words.size),
+      {.frames = frames, .firstFrame = moves ? words.frames - frames : 0, .seed = seed, .lastOnly = moves});
+  image::EvidenceCollector result(words.tile, 4 * words.tile);
+  runs.run(restarts, [&](const image::Picture& picture) { result.add(picture); });
+  return result;
+}
 
-  const gpu::Device& device() const { return device_; }
-  const render::Stage& stage() const { return stage_; }
+struct Setting {
+  std::string name;
+  std::vector<std::string> set, disable;
+};
 
-  /// One sample a restart: the mean of its frames, or, where a clip moves the scene and no two frames show the same,
-  /// the last one, number words.frames - 1.
-  image::RestartAccumulator run(const std::string& graph, const graph::Overrides& overrides, uint32_t restarts,
-                                uint32_t frames, uint32_t seed) {
-    execute::Executor executor(
-        device_, compiler_, registry_, scene_,
-        graph::compileFile(words_.graphs + "/" + graph, overrides, registry_.catalog(), words_.size, words_.size),
-        {.backend = backend_});
-    render::Player player(stage_);
-    image::RestartAccumulator result(words_.tile);
-    const uint32_t first = stage_.playback ? words_.frames - frames : 0;
-    for (uint32_t r = 0; r < restarts; ++r) {
-      executor.resetHistory();
-      render::FrameMean mean;
-      for (uint32_t f = first; f < first + frames; ++f) {
-        executor.frame(player.frame(f, render::restartSeed(seed, r)));
-        if (!stage_.playback || f + 1 == first + frames) mean.add(executor.read("radiance"));
-      }
-      result.add(mean.mean());
-    }
-    return result;
+/// Parameters of one mode for every reuse; `late`: no visibility before the last shadow ray.
+std::vector<std::string> modeSettings(const std::string& mis, bool late) {
+  std::vector<std::string> set;
+  for (const std::string pass : {"temporal", "spatial"}) {
+    set.push_back(pass + ".mis=" + mis);
+    set.push_back(fmt::format("{}.visibilityRays={}", pass, !late));
   }
+  set.push_back(fmt::format("initial.visibility={}", !late));
+  return set;
+}
 
- private:
-  const Words& words_;
-  Registry registry_;
-  render::Stage stage_;
-  gpu::Device device_;
-  trace::Backend backend_;
-  scene::SceneGpu scene_;
-  shader::Compiler compiler_;
-};
+/// Pairwise with rays, in four kinds of reuse; with --modes every combination that docs/estimators.md calls unbiased.
+std::vector<Setting> settingsOf(const Words& words) {
+  const std::vector<Setting> reuses = {{"temporal", {}, {"spatial"}}, {"spatial", {}, {"temporal"}}, {"both", {}, {}}};
+  std::vector<Setting> settings = {{"no reuse", {}, {"temporal", "spatial"}}};
+  if (!words.modes) {
+    for (Setting reuse : reuses) {
+      reuse.set = modeSettings("pairwise", false);
+      settings.push_back(reuse);
+    }
+    return settings;
+  }
+  settings.push_back({"no reuse, bsdfRays", {"initial.bsdfRays=1"}, {"temporal", "spatial"}});
+  for (const char* mis : {"z", "balance", "pairwise"}) {
+    for (const bool late : {false, true}) {
+      for (const Setting& reuse : reuses)
+        settings.push_back({fmt::format("{}, {}, {}", mis, late ? "late" : "rays", reuse.name), modeSettings(mis, late),
+                            reuse.disable});
+      Setting twice{
+          fmt::format("{}, {}, both, spatial twice", mis, late ? "late" : "rays"), modeSettings(mis, late), {}};
+      twice.set.emplace_back("spatial.iterations=2");
+      settings.push_back(twice);
+    }
+    Setting rays{fmt::format("{}, rays, both, bsdfRays", mis), modeSettings(mis, false), {}};
+    rays.set.emplace_back("initial.bsdfRays=1");
+    settings.push_back(rays);
+  }
+  return settings;
+}
 
 int run(const Words& words) {
-  Laboratory laboratory(words);
-  const auto reference =
-      laboratory.run("all_lights.json", {.set = {fmt::format("direct.samples={}", words.referenceSamples)}},
-                     words.referenceRestarts, 1, words.seed + 1000);
-  const image::Picture truth = reference.mean(), truthError = reference.standardError();
+  render::Laboratory laboratory({});
+  laboratory.open(words.stage, {.device = words.device, .trace = words.trace}, 1.0f);
+  const image::Evidence reference =
+      collect(words, laboratory, "all_lights.json", {.set = {fmt::format("direct.samples={}", words.referenceSamples)}},
+              words.referenceRestarts, 1, words.seed + 1000)
+          .evidence();
 
-  const std::vector<std::string> rays = {"temporal.mis=pairwise", "spatial.mis=pairwise",
-                                         "temporal.visibilityRays=true", "spatial.visibilityRays=true"};
-  struct Setting {
-    const char* name;
-    std::vector<std::string> disable;
-  };
-  const Setting settings[] = {
-      {"no reuse", {"temporal", "spatial"}}, {"temporal", {"spatial"}}, {"spatial", {"temporal"}}, {"both", {}}};
+  const std::vector<Setting> settings = settingsOf(words);
   Json j = {{"device", laboratory.device().info().name},
             {"scene", laboratory.stage().sceneLabel},
             {"lights", laboratory.stage().lightsLabel},
@@ -108,33 +110,31 @@ int run(const Words& words) {
   bool passed = true;
   for (const Setting& s : settings) {
     graph::Overrides overrides;
-    overrides.set = rays;
+    overrides.set = s.set;
     overrides.set.insert(overrides.set.end(), words.set.begin(), words.set.end());
     overrides.disable = s.disable;
-    const auto measured = laboratory.run("restir_di.json", overrides, words.restarts, words.frames, words.seed);
-    const image::TileTest t = image::tileTest(measured.tiles(), truth, &truthError);
+    const auto measured =
+        collect(words, laboratory, "restir_di.json", overrides, words.restarts, words.frames, words.seed);
+    const image::Verdict v = image::decide(measured.evidence(), reference, measured.nonFinite());
+    const image::Comparison& worst = v.fine.tiles[v.fine.worst];
     fmt::print(
-        "{:9} worst |t| {:5.2f} of {} tiles (bound {:.2f})  mean bias {:+.4f} % (99 %: {:+.4f} … {:+.4f})  a tile to "
-        "{:.2f} %  {}\n",
-        s.name, t.worstT, t.tiles.size(), t.bound, 100 * t.relativeBias, 100 * t.intervalLow, 100 * t.intervalHigh,
-        100 * t.detectable, t.passed ? "agrees" : "DIFFERS");
-    const image::TileResult& worst = t.tiles[t.worst];
-    if (!t.passed) {
-      fmt::print("          worst tile at {}, {}: {:.6g} ± {:.2g} for {:.6g} ({:+.2f} %)\n", t.grid.left(t.worst),
-                 t.grid.top(t.worst), worst.mean, worst.standardError, worst.reference, 100 * worst.relativeBias);
-    }
+        "{:32} {:9} worst |t| {:5.2f} of {} tiles, mean bias {:+.4f} % ({:+.4f} … {:+.4f}), a tile to {:.2f} %\n",
+        s.name, image::answerName(v.answer), std::abs(worst.t), v.fine.tiles.size(), 100 * v.whole.relative,
+        100 * v.low, 100 * v.high, 100 * v.fine.resolution);
+    for (const std::string& reason : v.reasons) fmt::print("{:32} {}\n", "", reason);
     std::fflush(stdout);
-    passed = passed && t.passed;
+    passed = passed && v.answer != image::Answer::Biased;
     j["settings"].push_back({{"name", s.name},
-                             {"worst_t", t.worstT},
-                             {"worst_tile", {t.grid.left(t.worst), t.grid.top(t.worst)}},
-                             {"worst_relative", worst.relativeBias},
-                             {"bound", t.bound},
-                             {"tiles", t.tiles.size()},
-                             {"mean_bias", t.relativeBias},
-                             {"interval_99", {t.intervalLow, t.intervalHigh}},
-                             {"detectable", t.detectable},
-                             {"passed", t.passed}});
+                             {"verdict", image::answerName(v.answer)},
+                             {"worst_t", std::abs(worst.t)},
+                             {"worst_tile", {v.fine.grid.left(v.fine.worst), v.fine.grid.top(v.fine.worst)}},
+                             {"worst_relative", worst.relative},
+                             {"bound", image::criticalT(worst.freedom, v.fine.level)},
+                             {"tiles", v.fine.tiles.size()},
+                             {"mean_bias", v.whole.relative},
+                             {"interval", {v.low, v.high}},
+                             {"detectable", v.fine.resolution},
+                             {"passed", v.answer != image::Answer::Biased}});
   }
   if (!words.json.empty()) render::writeTextFile(words.json, j.dump(2) + "\n");
   return passed ? 0 : 3;
@@ -164,6 +164,7 @@ int main(int argc, char** argv) {
   app.add_option("--device", words.device);
   app.add_option("--trace", words.trace);
   app.add_option("--graphs", words.graphs, "Folder with restir_di.json and all_lights.json");
+  app.add_flag("--modes", words.modes, "Every unbiased combination of MIS weights, visibility and reuse");
   app.add_option("--json", words.json);
   CLI11_PARSE(app, argc, argv);
   try {

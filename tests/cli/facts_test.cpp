@@ -52,7 +52,7 @@ TEST_F(Program, PassesNamesEveryPass) {
   }
   for (const char* type :
        {"gbuffer.RayTraced", "gbuffer.Raster", "restir_di.Initial", "restir_di.Temporal", "restir_di.Spatial",
-        "restir_di.Shade", "output.Tonemap", "output.Accumulate", "reference.AllLights"}) {
+        "restir_di.Shade", "output.Tonemap", "output.Accumulate", "reference.AllLights", "reference.PathTracer"}) {
     EXPECT_TRUE(types.contains(type)) << type;
   }
   const Ran text = weir("passes");

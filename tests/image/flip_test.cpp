@@ -1,4 +1,5 @@
-// FLIP by its properties and by values that follow from the paper by hand; the published pictures are not here.
+// FLIP by its properties and by values that follow from the papers by hand. compare_independent.py has the comparison
+// with a second implementation, and says what is published and what is derived.
 #include <gtest/gtest.h>
 #include <weir/core/error.h>
 #include <weir/image/flip.h>
@@ -104,6 +105,20 @@ TEST(Flip, HdrExposuresFollowTheReference) {
   EXPECT_NEAR(flipExposures(scaled(picture, 8)).start, e.start - 3, 1e-4);
   EXPECT_EQ(flipExposures(constantPicture(4, 4, 0, 0, 0)).count, 1);
   EXPECT_EQ(flipExposures(constantPicture(4, 4, 3, 3, 3)).count, 2);
+}
+
+// The authors publish that their HDR pair is looked at from -12.5423 to +0.9427 stops in 14 exposures. The pair isn't
+// here, but brightest and median luminance follow from the two ends, and with them a picture of which the same must be
+// true.
+TEST(Flip, HdrExposuresOfThePublishedPair) {
+  const double shoulder = std::exp2(flipExposures(constantPicture(1, 1, 1, 1, 1)).start);
+  const auto median = float(shoulder * std::exp2(-0.9427)), brightest = float(shoulder * std::exp2(12.5423));
+  Picture picture = constantPicture(5, 5, median, median, median);
+  std::fill_n(picture.at(2, 2), 3, brightest);
+  const FlipExposures e = flipExposures(picture);
+  EXPECT_NEAR(e.start, -12.5423, 1e-4);
+  EXPECT_NEAR(e.stop, 0.9427, 1e-4);
+  EXPECT_EQ(e.count, 14);
 }
 
 TEST(Flip, HdrIgnoresACommonScaleAndSeesHighlights) {

@@ -135,6 +135,11 @@ TEST(Metrics, AttributesThatNameOtherThings) {
   ASSERT_EQ(conflicts.size(), 1u);  // seeds may differ, and lights are not in both
   EXPECT_EQ(conflicts[0], "weir.scene: 'box' here, 'ball' in the reference");
   EXPECT_TRUE(attributeConflicts(a, a).empty());
+  b = a;
+  a.attributes["weir.shading"] = "glTF 2.0";
+  EXPECT_TRUE(attributeConflicts(a, b).empty()) << "one of them doesn't say";
+  b.attributes["weir.shading"] = "glTF 2.0 with energy compensation";
+  EXPECT_EQ(attributeConflicts(a, b).size(), 1u);
 }
 
 }  // namespace

@@ -38,6 +38,10 @@ TEST(Corpus, RoughnessByFactorAndByTextureIsTheSame) {
     for (const GPixel& p : frame.pixels) {
       if (p.distance > 0) rows[row].insert(std::lround(p.roughness * 65535));
     }
+    // Rounded up here and down there: neighbouring steps are one value.
+    for (auto a = rows[row].begin(); a != rows[row].end();) {
+      a = std::next(a) != rows[row].end() && *std::next(a) - *a <= 1 ? rows[row].erase(a) : std::next(a);
+    }
   }
   EXPECT_GE(rows[0].size(), 3u);
   ASSERT_EQ(rows[0].size(), rows[1].size());

@@ -77,10 +77,10 @@ TEST(Materials, SpecularGlossinessByNumbers) {
   const GFrame frame = show("gbuffer.RayTraced", b.scene, {});
   const GPixel& p = frame.at(24, 20);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(p.diffuseRoot[c], std::sqrt(m.baseColor[c] * 0.64), 6e-4);
-    EXPECT_NEAR(p.f0Root[c], std::sqrt(m.specularColor[c]), 6e-4);
+    EXPECT_NEAR(p.diffuseRoot[c], std::sqrt(m.baseColor[c] * 0.64), 1e-3);
+    EXPECT_NEAR(p.f0Root[c], std::sqrt(m.specularColor[c]), 1e-3);
   }
-  EXPECT_NEAR(p.roughness, 0.25, 1e-5);
+  EXPECT_NEAR(p.roughness, 0.25, 2e-5);
 }
 
 TEST(Materials, IorAndSpecular) {
@@ -113,7 +113,7 @@ TEST(Materials, IorAndSpecular) {
     Tolerance t = c.textured ? kTextured : Tolerance{};
     if (p.traits.f90) {
       t.roughnessStep = 1.0 / 1023;
-      t.f90 = 0.5 / 63;
+      t.f90 = 1.0 / 63;
     }
     showBoth(b.scene, t);
   }

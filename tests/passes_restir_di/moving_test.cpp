@@ -16,12 +16,13 @@
 namespace weir::test {
 namespace {
 
-constexpr uint32_t kSide = 64, kTile = 16, kFirst = 3, kFrames = 5, kLast = kFirst + kFrames - 1;
+constexpr uint32_t kTile = 16, kFirst = 3, kFrames = 5, kLast = kFirst + kFrames - 1;
 
-class Laboratory {
+class MovingLaboratory {
  public:
-  explicit Laboratory(const std::string& clip)
-      : device_(validatedDevice()),
+  MovingLaboratory(const std::string& clip, uint32_t side)
+      : side_(side),
+        device_(validatedDevice()),
         guard_(*device_),
         registry_({std::filesystem::path(binaryPath("bin"))}),
         stage_(render::makeStage({.scene = sourcePath("scenes/cornell-moving.glb"),
@@ -36,7 +37,7 @@ class Laboratory {
   image::RestartAccumulator run(const std::string& graph, const graph::Overrides& overrides, uint32_t restarts,
                                 uint32_t first, trace::Backend backend, uint32_t seed) {
     execute::Executor executor(*device_, compiler_, registry_, scene_,
-                               graph::compileFile(sourcePath(graph), overrides, registry_.catalog(), kSide, kSide),
+                               graph::compileFile(sourcePath(graph), overrides, registry_.catalog(), side_, side_),
                                {.backend = backend});
     render::Player player(stage_);
     image::RestartAccumulator result(kTile);
@@ -50,6 +51,7 @@ class Laboratory {
   trace::Backend backend(const std::string& name) const { return trace::chooseBackend(name, *device_); }
 
  private:
+  uint32_t side_;
   std::shared_ptr<gpu::Device> device_;
   ExpectNoValidationMessages guard_;
   Registry registry_;
@@ -62,7 +64,7 @@ class Laboratory {
 /// 1e-3 for its tiles, and as much for the mean.
 void expectUnbiased(const std::string& clip, const std::vector<std::string>& disable, const std::string& backend) {
   SCOPED_TRACE(clip + " " + backend);
-  Laboratory laboratory(clip);
+  MovingLaboratory laboratory(clip, 64);
   const trace::Backend how = laboratory.backend(backend);
   const image::RestartAccumulator reference = laboratory.run(
       "graphs/all_lights.json", {.set = {"direct.samples=4"}, .enable = {}, .disable = {}}, 24, kLast, how, 1000);
@@ -93,6 +95,38 @@ TEST(RestirMoving, AgreesWithBruteForceAtThatFrame) {
 }
 TEST(RestirMoving, AgreesByQueriesWithoutSpatialReuse) {
   expectUnbiased("everything", {"spatial"}, "query");
+}
+
+// Temporal reuse by the other weights, with rays through last frame's scene and with none but the last. Chance of a
+// false alarm: 1e-3 for all tiles, and as much for all means.
+TEST(RestirMoving, EveryModeTemporally) {
+  MovingLaboratory laboratory("everything", 32);
+  const trace::Backend how = laboratory.backend("auto");
+  const image::RestartAccumulator reference = laboratory.run(
+      "graphs/all_lights.json", {.set = {"direct.samples=6"}, .enable = {}, .disable = {}}, 32, kLast, how, 1000);
+  const image::Picture truth = reference.mean(), truthError = reference.standardError();
+  const struct {
+    const char* mis;
+    bool rays;
+  } settings[] = {{"z", true}, {"balance", true}, {"z", false}, {"balance", false}, {"pairwise", false}};
+  for (const auto& s : settings) {
+    SCOPED_TRACE(std::string(s.mis) + (s.rays ? ", rays" : ", late"));
+    graph::Overrides overrides{.set = {"initial.candidates=4", "temporal.confidenceCap=8",
+                                       "temporal.normalThreshold=40", std::string("temporal.mis=") + s.mis},
+                               .enable = {},
+                               .disable = {"spatial"}};
+    overrides.set.emplace_back(s.rays ? "temporal.visibilityRays=true" : "initial.visibility=false");
+    const image::RestartAccumulator measured = laboratory.run("graphs/restir_di.json", overrides, 48, kFirst, how, 7);
+    const image::TileTest t = image::tileTest(measured.tiles(), truth, &truthError, {.alpha = 1e-3 / 5});
+    EXPECT_TRUE(t.passed) << "worst |t| " << t.worstT << ", bound " << t.bound << ", tile " << t.worst << ": "
+                          << t.tiles[t.worst].relativeBias;
+    std::printf("%s, %s: worst |t| %.2f of bound %.2f, bias %+.3f %% (%+.3f ... %+.3f)\n", s.mis,
+                s.rays ? "rays" : "late", t.worstT, t.bound, 100 * t.relativeBias, 100 * t.intervalLow,
+                100 * t.intervalHigh);
+    EXPECT_LE(t.intervalLow, 0.0);
+    EXPECT_GE(t.intervalHigh, 0.0);
+    EXPECT_LT(t.intervalHigh - t.intervalLow, 0.06);
+  }
 }
 
 }  // namespace

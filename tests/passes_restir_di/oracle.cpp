@@ -98,9 +98,12 @@ glm::dvec2 barycentrics(uint32_t place) {
 }
 
 World::World(const scene::PreparedScene& prepared) : lights_(prepared.lights) {
-  for (const scene::PackedTriangle& t : prepared.triangles)
+  for (const scene::PackedTriangle& t : prepared.triangles) {
     triangles_.push_back(
         {Vec(prepared.positions[t.v[0]]), Vec(prepared.positions[t.v[1]]), Vec(prepared.positions[t.v[2]])});
+    const scene::PackedMaterial& m = prepared.materials[t.material];
+    through_.push_back((m.flags & scene::kMaterialBlend) != 0 ? 1.0 - static_cast<double>(m.baseColor.a) : 0.0);
+  }
 }
 
 bool World::isTriangle(uint32_t light) const {
@@ -147,9 +150,11 @@ double World::target(const Surface& surface, uint32_t light, uint32_t place) con
   return luminance(contribution(surface, light, place));
 }
 
-bool World::visible(const Vec& from, const Vec& to) const {
+double World::transmittance(const Vec& from, const Vec& to) const {
   const Vec d = to - from;
-  for (const auto& t : triangles_) {
+  double through = 1.0;
+  for (size_t i = 0; i < triangles_.size(); ++i) {
+    const auto& t = triangles_[i];
     // Möller and Trumbore 1997.
     const Vec e1 = t[1] - t[0], e2 = t[2] - t[0], p = glm::cross(d, e2);
     const double determinant = glm::dot(e1, p);
@@ -157,9 +162,13 @@ bool World::visible(const Vec& from, const Vec& to) const {
     const Vec s = from - t[0], q = glm::cross(s, e1);
     const double u = glm::dot(s, p) / determinant, v = glm::dot(d, q) / determinant;
     const double along = glm::dot(e2, q) / determinant;
-    if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && along > 1e-5 && along < 1.0 - 1e-5) return false;
+    if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && along > 1e-5 && along < 1.0 - 1e-5) through *= through_[i];
   }
-  return true;
+  return through;
+}
+
+double World::transmittance(const Surface& surface, uint32_t light, uint32_t place) const {
+  return transmittance(surface.position, arriving(light, barycentrics(place), surface.position).target);
 }
 
 bool World::sees(const Surface& surface, uint32_t light, uint32_t place) const {
@@ -174,7 +183,7 @@ double World::directLight(const Surface& surface, bool shadows, int strata) cons
     for (int j = 0; j < n * n; ++j) {
       const Arriving a = arriving(i, barycentrics((j % n + 0.5) / n, (j / n + 0.5) / n), surface.position);
       const double f = luminance(bsdfCos(surface, a.direction) * a.radiance);
-      if (f > 0.0 && (!shadows || visible(surface.position, a.target))) light += f;
+      if (f > 0.0) light += shadows ? f * transmittance(surface.position, a.target) : f;
     }
     sum += light * area(i) / (n * n);
   }
@@ -203,24 +212,60 @@ passes::Reservoir World::sample(const Surface& surface, Random& random, int cand
   return r;
 }
 
+const char* nameOf(Mis mis) {
+  switch (mis) {
+    case Mis::Biased:
+      return "biased";
+    case Mis::Z:
+      return "z";
+    case Mis::Balance:
+      return "balance";
+    case Mis::Pairwise:
+      return "pairwise";
+  }
+  return "";
+}
+
+double misWeight(const std::vector<MergeInput>& inputs, size_t i, Mis mis) {
+  const std::vector<double>& p = inputs[i].targets;
+  const auto confidence = [&](size_t j) { return inputs[j].confidence; };
+  double total = 0.0, containing = 0.0, balance = 0.0;
+  for (size_t j = 0; j < inputs.size(); ++j) {
+    total += confidence(j);
+    if (p[j] > 0.0) containing += confidence(j);
+    balance += confidence(j) * p[j];
+  }
+  const double own = confidence(0), others = total - own;
+  switch (mis) {
+    case Mis::Biased:
+      return confidence(i) / total;
+    case Mis::Z:
+      return p[i] > 0.0 ? confidence(i) / containing : 0.0;
+    case Mis::Balance:
+      return confidence(i) * p[i] / balance;
+    case Mis::Pairwise:
+      break;
+  }
+  if (i > 0) return confidence(i) / total * others * p[i] / (own * p[0] + others * p[i]);
+  double m = own / total;
+  for (size_t j = 1; j < inputs.size(); ++j) m += confidence(j) / total * own * p[0] / (own * p[0] + others * p[j]);
+  return m;
+}
+
 Merged merge(const std::vector<MergeInput>& inputs, Mis mis) {
-  const size_t n = inputs.size();
   Merged result;
   for (const MergeInput& i : inputs) result.confidence += i.confidence;
-  const double own = inputs[0].confidence, others = result.confidence - own, total = result.confidence;
-  for (size_t i = 0; i < n; ++i) {
-    const std::vector<double>& p = inputs[i].targets;
-    double m = inputs[i].confidence / total;
-    if (mis == Mis::Pairwise && i > 0) m *= others * p[i] / (own * p[0] + others * p[i]);
-    if (mis == Mis::Pairwise && i == 0) {
-      for (size_t j = 1; j < n; ++j) m += inputs[j].confidence / total * own * p[0] / (own * p[0] + others * p[j]);
-    }
-    const double weight = inputs[i].weight > 0.0 && p[0] > 0.0 ? m * p[0] * inputs[i].weight : 0.0;
-    result.probability.push_back(weight);
-    result.sum += weight;
+  std::vector<double> part;  // of the sum that goes into W
+  for (size_t i = 0; i < inputs.size(); ++i) {
+    const bool is = inputs[i].weight > 0.0 && inputs[i].targets[0] > 0.0;
+    const double m = is ? misWeight(inputs, i, mis) : 0.0;
+    const double chosenBy = mis == Mis::Z ? inputs[i].confidence : m;
+    part.push_back(mis == Mis::Z ? m / inputs[i].confidence : 1.0);
+    result.probability.push_back(is ? chosenBy * inputs[i].targets[0] * inputs[i].weight : 0.0);
+    result.sum += result.probability.back();
   }
-  for (size_t i = 0; i < n; ++i) {
-    result.weight.push_back(result.probability[i] > 0.0 ? result.sum / inputs[i].targets[0] : 0.0);
+  for (size_t i = 0; i < inputs.size(); ++i) {
+    result.weight.push_back(result.probability[i] > 0.0 ? part[i] * result.sum / inputs[i].targets[0] : 0.0);
     result.probability[i] = result.sum > 0.0 ? result.probability[i] / result.sum : 0.0;
   }
   return result;

@@ -60,8 +60,11 @@ class World {
   /// BSDF · cosine · radiance · geometry, unshadowed.
   Vec contribution(const Surface& surface, uint32_t light, uint32_t place) const;
   double target(const Surface& surface, uint32_t light, uint32_t place) const;
-  /// Whether no triangle lies between; both ends are left out by 1e-5 of the distance.
-  bool visible(const Vec& from, const Vec& to) const;
+  /// What part of the light comes through the triangles between: 0 behind an opaque one, 1 - alpha for each that blends
+  /// (untextured). Both ends are left out by 1e-5 of the distance.
+  double transmittance(const Vec& from, const Vec& to) const;
+  bool visible(const Vec& from, const Vec& to) const { return transmittance(from, to) > 0.0; }
+  double transmittance(const Surface& surface, uint32_t light, uint32_t place) const;
   bool sees(const Surface& surface, uint32_t light, uint32_t place) const;
   /// Luminance of the direct light by every light: midpoints of strata² cells on each triangle.
   double directLight(const Surface& surface, bool shadows, int strata = 32) const;
@@ -73,22 +76,30 @@ class World {
  private:
   std::vector<scene::GpuLight> lights_;
   std::vector<std::array<Vec, 3>> triangles_;
+  std::vector<double> through_;  ///< 1 - alpha of each
 };
 
-/// One input of a merge. `targets[j]` is p̂_j of this input's sample at the surface of input j (with its visibility
-/// where the weights ask for it); all zero and weight 0 for a null sample. Input 0 is the merging pixel's own.
+/// One input of a merge. `targets[j]` is p̂_j of this input's sample at the surface of input j, with its visibility
+/// there where the weights ask for it (j = 0: without); all zero and weight 0 for a null sample. Input 0 is the merging
+/// pixel's own.
 struct MergeInput {
   double confidence = 0.0, weight = 0.0;
   std::vector<double> targets;
 };
 struct Merged {
-  double sum = 0.0;                 ///< Σ m_i p̂_0(x_i) W_i
+  double sum = 0.0;                 ///< of the weights that samples are chosen by
   std::vector<double> probability;  ///< that input i survives
-  std::vector<double> weight;       ///< W if it does
+  std::vector<double> weight;       ///< W if it does; 0: what comes out is a null sample
   double confidence = 0.0;
 };
-enum class Mis { Biased, Pairwise };
-/// The merge of Lin et al. 2022 with confidence weights.
+enum class Mis { Biased, Z, Balance, Pairwise };
+constexpr Mis kEveryMis[] = {Mis::Biased, Mis::Z, Mis::Balance, Mis::Pairwise};
+constexpr Mis kUnbiasedMis[] = {Mis::Z, Mis::Balance, Mis::Pairwise};
+const char* nameOf(Mis mis);  ///< as the passes' parameter has it
+/// m_i(x_i), with which W_i counts: Bitterli et al. 2020 (biased, z), Talbot et al. 2005 (balance), Lin et al. 2022
+/// (pairwise), each with confidence weights. All but the first sum to one over the domains that contain a sample.
+double misWeight(const std::vector<MergeInput>& inputs, size_t i, Mis mis);
+/// The merge. By z samples are chosen by c_i p̂_0(x_i) W_i, what was chosen has its Z divided out; else by m_i p̂_0 W_i.
 Merged merge(const std::vector<MergeInput>& inputs, Mis mis);
 
 }  // namespace weir::test::oracle

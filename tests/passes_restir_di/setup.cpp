@@ -115,12 +115,16 @@ void show(PassTest& pass, const View& view, scene::Scene scene) {
 
 scene::Scene smallScene(const Lights& lights) {
   scene::Scene scene;
-  scene.materials.resize(2);
+  scene.materials.resize(3);
   scene.materials[0].doubleSided = true;
   scene.materials[1].emission = {6.0f, 5.0f, 4.0f};
+  scene.materials[2].doubleSided = true;
+  scene.materials[2].alphaMode = scene::AlphaMode::Blend;
+  scene.materials[2].baseColor = {1.0f, 1.0f, 1.0f, 0.6f};
   // Far behind every surface: it blocks nothing and makes the scene's bounds hold the surfaces.
   addQuad(scene, {-3.0f, -3.0f, -6.0f}, {6.0f, 0.0f, 0.0f}, {0.0f, 6.0f, 0.0f}, 0);
   if (lights.blocker) addQuad(scene, {-0.3f, -0.7f, 0.8f}, {1.1f, 0.0f, 0.1f}, {0.0f, 1.3f, 0.0f}, 0);
+  if (lights.veil) addQuad(scene, {-1.7f, -1.2f, 0.7f}, {1.9f, 0.1f, 0.0f}, {0.1f, 1.6f, 0.2f}, 2);
   // Front side towards -z, where the surfaces are.
   if (lights.quad) addQuad(scene, {-1.5f, 0.6f, 2.0f}, {0.0f, 0.9f, 0.0f}, {1.2f, 0.0f, 0.3f}, 1);
   if (lights.points) {
@@ -169,8 +173,8 @@ bool isFinite(const passes::Reservoir& r) {
 double estimate(const oracle::World& world, const oracle::Surface& surface, const passes::Reservoir& r,
                 bool visibility) {
   if (!(r.weight > 0.0f)) return 0.0;
-  if (visibility && !world.sees(surface, lightOf(r), r.place)) return 0.0;
-  return world.target(surface, lightOf(r), r.place) * static_cast<double>(r.weight);
+  const double through = visibility ? world.transmittance(surface, lightOf(r), r.place) : 1.0;
+  return through * world.target(surface, lightOf(r), r.place) * static_cast<double>(r.weight);
 }
 
 std::vector<passes::Reservoir> freshReservoirs(const oracle::World& world, const View& view, oracle::Random& random,
@@ -180,7 +184,8 @@ std::vector<passes::Reservoir> freshReservoirs(const oracle::World& world, const
     for (int k = 0; k < perPixel; ++k) {
       passes::Reservoir r{};
       if (view.has(i)) r = world.sample(view[i], random, candidates, visibility, confidence);
-      if (visibility && r.weight > 0.0f && random() % 2 == 0) r.light |= 0x80000000u;
+      if (visibility && r.weight > 0.0f && random() % 2 == 0 && world.transmittance(view[i], r.light, r.place) == 1.0)
+        r.light |= 0x80000000u;
       result.push_back(r);
     }
   }

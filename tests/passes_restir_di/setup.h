@@ -60,6 +60,7 @@ void show(PassTest& pass, const View& view, scene::Scene scene);
 
 struct Lights {
   bool points = true, spot = true, quad = true, blocker = true;
+  bool veil = false;  ///< a sheet that lets 40 % through, before another part of the plane
 };
 /// Lights of every kind in front of the plane z = 0, and a square blocker between them and a part of it.
 /// The surfaces that tests write are not geometry of the scene: nothing but lights' triangles and the blocker is.
@@ -75,12 +76,12 @@ inline bool isSeen(const passes::Reservoir& r) {
   return (r.light & 0x80000000u) != 0;
 }
 bool isFinite(const passes::Reservoir& r);
-/// Luminance of f · W, times the oracle's visibility when asked.
+/// Luminance of f · W, times the oracle's transmittance when asked.
 double estimate(const oracle::World& world, const oracle::Surface& surface, const passes::Reservoir& r,
                 bool visibility);
 
 /// A reservoir by RIS for every pixel and sample; none has a sample or confidence where there is no surface. With
-/// visibility, hidden samples are null and half of the others say that they were seen.
+/// visibility, hidden samples are null and half of those that nothing veils say that they were seen.
 std::vector<passes::Reservoir> freshReservoirs(const oracle::World& world, const View& view, oracle::Random& random,
                                                int candidates, bool visibility, double confidence = 1.0,
                                                int perPixel = 1);

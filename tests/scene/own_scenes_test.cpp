@@ -25,6 +25,31 @@ TEST(OwnScenes, CornellHasADownwardLampAndACamera) {
   }
 }
 
+// What docs/offline.md compares with a renderer that has another idea of a dielectric's surface.
+TEST(OwnScenes, LambertianScenesReflectNothingElse) {
+  for (const std::string name : {"cornell-lambert.glb", "interior.glb"}) {
+    const Scene scene = own(name);
+    EXPECT_TRUE(scene.warnings.empty()) << name;
+    const PreparedScene p = prepareScene(scene);
+    ASSERT_EQ(p.speculars.size(), scene.materials.size() + 1) << name;  // the last one is for primitives without any
+    for (size_t i = 0; i < scene.materials.size(); ++i) {
+      EXPECT_EQ(scene.materials[i].metallic, 0.0f) << name << ": " << i;
+      EXPECT_EQ(p.speculars[i].weight, 0.0f) << name << ": " << i;  // scales F0 and F90
+    }
+    EXPECT_TRUE(p.traits.dielectricSpecular && p.traits.f90) << name;
+    EXPECT_TRUE(scene.images.empty()) << name;
+  }
+}
+
+TEST(OwnScenes, TheInteriorIsLitInFourWays) {
+  const Scene scene = own("interior.glb");
+  const SceneSummary s = summarize(scene);
+  EXPECT_EQ(s.pointLights, 1u);
+  EXPECT_EQ(s.directionalLights, 1u);
+  EXPECT_EQ(s.emissiveTriangles, 2u + 6 * 8);  // a panel, and a lantern of two cones and two bands of eight quads
+  EXPECT_GT(s.instancedTriangles, 3000u);
+}
+
 TEST(OwnScenes, AThousandPointsInsideTheRoom) {
   const Scene scene = own("cornell-1000-points.glb");
   const SceneSummary s = summarize(scene);
@@ -60,7 +85,8 @@ TEST(OwnScenes, MaterialsAndMasks) {
 }
 
 TEST(OwnScenes, EveryNormalFacesLikeItsTriangle) {
-  for (const std::string name : {"cornell.glb", "cornell-1000-points.glb", "materials.glb", "alpha-mask.glb"}) {
+  for (const std::string name : {"cornell.glb", "cornell-lambert.glb", "cornell-1000-points.glb", "interior.glb",
+                                 "materials.glb", "alpha-mask.glb"}) {
     const Scene scene = own(name);
     EXPECT_EQ(chooseCamera(scene, "", 1.0f).name, "main");
     const PreparedScene p = prepareScene(scene);

@@ -175,7 +175,8 @@ glm::dvec4 RayOracle::color(const OracleHit& hit) const {
   glm::dvec4 sum(0.0);
   for (int k = 0; k < 3; ++k) {
     const scene::PackedColor c = prepared_.colors[prepared_.triangles[hit.triangle].v[k]];
-    sum += w[k] * glm::dvec4(c.rg & 0xffffu, c.rg >> 16, c.ba & 0xffffu, c.ba >> 16) / 65535.0;
+    const glm::dvec4 stored = glm::dvec4(c.rg & 0xffffu, c.rg >> 16, c.ba & 0xffffu, c.ba >> 16) / 65535.0;
+    sum += w[k] * glm::dvec4(glm::dvec3(stored) * glm::dvec3(stored), stored.a);
   }
   return sum;
 }

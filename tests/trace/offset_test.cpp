@@ -13,13 +13,16 @@ struct Rays {
   uint64_t wrong = 0, all = 0;
 };
 
-/// Shoots `rays` a pixel from what a camera sees.
-Rays leave(const scene::Scene& scene, const scene::Camera& camera, const std::string& mode, uint32_t side, int rays) {
+/// Shoots `rays` a pixel from what a camera sees. `traced`: as its ray met it, in full precision; else as it was
+/// packed.
+Rays leave(const scene::Scene& scene, const scene::Camera& camera, const std::string& mode, uint32_t side, int rays,
+           bool traced = false) {
   PassTest eye("gbuffer.RayTraced");
   eye.size(side, side).scene(scene).camera(camera).param("jitter", "true");
   eye.run();
   PassTest t("trace_test.Leave");
   withProbes(t).size(side, side).scene(scene).camera(camera).param("mode", mode).param("rays", std::to_string(rays));
+  t.param("traced", traced ? "true" : "false");
   t.input("surface", eye.output<passes::PackedSurface>("surface"));
   t.run();
   Rays sum;
@@ -92,6 +95,20 @@ TEST(Offset, FarFromTheOrigin) {
             300'000);
   // A small thing seen from a long way off: the distance's own rounding moves the point.
   expectFew(leave(octahedron(), lookAt({300, 200, 500}, {0.3f, 0.2f, 0}, 0.2f), "sky", 160, 128), 300'000);
+}
+
+// What paths go on from: interpolated on the triangle, wherever that is and however it was brought there. A camera far
+// away moves nothing here.
+TEST(Offset, VerticesOfPathsDoNotShadowThemselves) {
+  const scene::Camera camera = lookAt({0.4f, 0.9f, 2.6f}, {0.3f, 0.2f, 0}, 50);
+  for (const float scale : {1e-4f, 1.0f, 1e6f}) {
+    SCOPED_TRACE(scale);
+    expectFew(leave(scaled(ball(), scale), moved(camera, scale), "sky", 112, 24, true), 70'000);
+  }
+  const glm::vec3 far(300, -200, 500);
+  expectFew(leave(shifted(octahedron(), far), moved(camera, 1, far), "sky", 112, 48, true), 70'000);
+  expectFew(leave(octahedron(), lookAt({300, 200, 500}, {0.3f, 0.2f, 0}, 0.2f), "sky", 112, 48, true), 70'000);
+  expectFew(leave(plane(30'000.0f), lookAt({0.2f, 1.7f, 0.5f}, {2, 0.5f, 3}, 70), "sky", 112, 24, true), 70'000);
 }
 
 TEST(Offset, TrianglesMuchLargerThanTheView) {

@@ -89,6 +89,7 @@ class Leave final : public Pass {
     d.output("count", perPixel<Count>());
     d.param("rays", 16).range(1, 4096);
     d.param("mode", "sky").oneOf({"sky", "lights", "leak"});
+    d.param("traced", false).doc("From surfaces as paths have them: a ray's hit, not what was packed of it");
     d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
     d.needs(Need::FrameCamera).needs(Need::FrameIndex);
   }

@@ -2,6 +2,7 @@
 // scene leaves free. lights: to points on the scene's lights, free too. leak: to points outside of a closed room, never free.
 #include "random.glsl"
 #include "visibility.glsl"
+#include "hit_surface.glsl"
 
 void run(uvec2 pixel) {
   const uint index = pixel.y * frameWidth + pixel.x;
@@ -10,7 +11,16 @@ void run(uvec2 pixel) {
     out_count[index] = Count(0u, 0u);
     return;
   }
-  const Surface s = unpackSurface(packed, pixel, camera, frameSize);
+  Surface s = unpackSurface(packed, pixel, camera, frameSize);
+  if (param_traced) {
+    const vec3 direction = -s.view;
+    const Hit hit = traceClosest(camera.origin.xyz, direction, 3.0e38, 0u, kCameraSides);
+    if (hit.triangle == kNoTriangle) {
+      out_count[index] = Count(0u, 0u);
+      return;
+    }
+    s = surfaceFrom(surfaceAt(hit, camera.origin.xyz, direction, kBaseTexels), direction);
+  }
   const vec3 side = normalize(abs(s.geometricNormal.x) < 0.5 ? cross(s.geometricNormal, vec3(1, 0, 0))
                                                              : cross(s.geometricNormal, vec3(0, 1, 0)));
   const vec3 other = cross(s.geometricNormal, side);

@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+#include <weir/core/error.h>
+#include <weir/core/paths.h>
+#include <weir/render/laboratory.h>
+#include <weir/render/render.h>
+#include <weir/trace/acceleration.h>
+
+#include <filesystem>
+
+namespace weir::render {
+
+Laboratory::Laboratory(const std::vector<std::string>& pluginPaths) : registry_(pluginSearchPath(pluginPaths)) {}
+
+graph::CompiledGraph Laboratory::compile(const std::string& file, const graph::Overrides& overrides, uint32_t width,
+                                         uint32_t height) {
+  return graph::compileFile(file, overrides, registry_.catalog(), width, height);
+}
+
+void Laboratory::open(const StageOptions& stage, const DeviceChoice& choice, float aspect) {
+  stage_ = makeStage(stage, aspect);
+  sceneFolder_ = std::filesystem::path(stage.scene).parent_path().string();
+  gpu::DeviceOptions options;
+  options.choice = choice.device;
+  options.validation = choice.validation;
+  device_ = std::make_unique<gpu::Device>(options);
+  backend_ = trace::chooseBackend(choice.trace, *device_);
+  scene_ = std::make_unique<scene::SceneGpu>(*device_, stage_->scene, stage_->prepared,
+                                             device_->capabilities().accelerationStructure);
+}
+
+void Laboratory::requireNoValidationMessages() const {
+  if (device_->validationMessages().empty()) return;
+  std::string text = "validation layers complain:";
+  for (const gpu::ValidationMessage& m : device_->validationMessages()) text += "\n" + m.text;
+  throw RuntimeError(text);
+}
+
+std::unique_ptr<execute::Executor> Laboratory::executor(graph::CompiledGraph graph) {
+  execute::ExecutorOptions options;
+  options.backend = backend_;
+  options.sceneFolder = sceneFolder_;
+  return std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(graph), options);
+}
+
+Restarts::Restarts(Laboratory& laboratory, graph::CompiledGraph graph, const RestartOptions& options)
+    : options_(options), executor_(laboratory.executor(std::move(graph))), player_(laboratory.stage()) {
+  executor_->captureTo({options_.output}, [this](const std::string&, const image::Picture& picture) {
+    mean_.add(picture);
+    if (++delivered_ < (options_.lastOnly ? 1 : options_.frames)) return;
+    delivered_ = 0;
+    const FrameMean whole = std::exchange(mean_, {});
+    (*sink_)(whole.mean());
+  });
+}
+
+void Restarts::run(uint32_t count, const Sink& sink) {
+  sink_ = &sink;
+  for (uint32_t r = 0; r < count; ++r, ++done_) {
+    executor_->resetHistory();
+    for (uint32_t f = 0; f < options_.frames; ++f) {
+      executor_->frame(player_.frame(options_.firstFrame + f, restartSeed(options_.seed, done_)),
+                       !options_.lastOnly || f + 1 == options_.frames);
+    }
+  }
+  executor_->finish();
+  sink_ = nullptr;
+}
+
+std::string bundledGraph(const std::string& name) {
+  const std::filesystem::path own = libraryFolder();
+  // Build tree, bundle, installations with lib and with lib/<architecture>.
+  for (const char* folder : {"graphs", "../graphs", "../share/weir/graphs", "../../share/weir/graphs"}) {
+    const std::filesystem::path file = own / folder / name;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file, ignored)) return file.lexically_normal().string();
+  }
+  throw InputError(fmt::format("no graph {} beside {}", name, own.string()));
+}
+
+}  // namespace weir::render

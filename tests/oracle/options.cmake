@@ -1,0 +1,15 @@
+# The CPU oracle: a library for its tests, and a program for long runs.
+find_package(embree 3 REQUIRED)
+find_package(Threads REQUIRED)
+find_package(CLI11 REQUIRED)
+file(GLOB oracle_sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+list(FILTER oracle_sources EXCLUDE REGEX "(_test|main)\\.cpp$")
+add_library(weir_oracle STATIC ${oracle_sources})
+target_include_directories(weir_oracle PUBLIC ${folder})
+target_include_directories(weir_oracle SYSTEM PRIVATE ${EMBREE_INCLUDE_DIRS})
+target_link_libraries(weir_oracle PUBLIC weir::framework weir_options nlohmann_json::nlohmann_json
+                                  PRIVATE ${EMBREE_LIBRARIES} Threads::Threads)
+target_link_libraries(test_oracle PRIVATE weir_oracle)
+add_dependencies(test_oracle weir_plugin_gbuffer weir_plugin_reference weir_plugin_output)
+add_executable(oracle ${folder}/main.cpp)
+target_link_libraries(oracle PRIVATE weir_oracle CLI11::CLI11)

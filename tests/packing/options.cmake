@@ -1,0 +1,1 @@
+add_dependencies(test_${name} weir_plugin_restir_di weir_plugin_gbuffer weir_plugin_output weir_plugin_reference)
