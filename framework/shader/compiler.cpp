@@ -4,6 +4,7 @@
 #include <weir/shader/sources.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace weir::shader {
 namespace {
@@ -23,9 +24,12 @@ std::vector<std::string> filesOnDisk(const Sources& sources, bool missing = fals
 
 }  // namespace
 
-Compiler::Compiler(const std::string& cacheFolder) : cacheFolder_(weir::cacheFolder(cacheFolder)) {}
+Compiler::Compiler(const std::string& cacheFolder, std::vector<std::pair<std::string, std::string>> defines)
+    : cacheFolder_(weir::cacheFolder(cacheFolder)), defines_(std::move(defines)) {}
 
-Module Compiler::compile(const CompileRequest& request) {
+Module Compiler::compile(const CompileRequest& asked) {
+  CompileRequest request = asked;
+  request.defines.insert(request.defines.begin(), defines_.begin(), defines_.end());
   Sources sources(request);
   sources.followAll();
   const size_t followed = countFound(sources);

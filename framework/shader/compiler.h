@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace weir::shader {
@@ -49,11 +50,13 @@ struct Module {
 class Compiler {
  public:
   /// `cacheFolder` empty: $WEIR_CACHE_DIR, else $XDG_CACHE_HOME/weir, else ~/.cache/weir; "-": no cache.
-  explicit Compiler(const std::string& cacheFolder = {});
+  /// `defines` stand before those of every request.
+  explicit Compiler(const std::string& cacheFolder = {}, std::vector<std::pair<std::string, std::string>> defines = {});
   Module compile(const CompileRequest& request);
 
  private:
   std::string cacheFolder_;
+  std::vector<std::pair<std::string, std::string>> defines_;
 };
 
 /// Storage-buffer blocks of a module by glslang's reflection of its source, for tests that host and shader agree.

@@ -3,6 +3,7 @@
 #ifndef WEIR_BSDF
 #define WEIR_BSDF
 
+#include "mutants.glsl"
 #include "surface.glsl"
 
 const float kPi = 3.14159265358979;
@@ -24,7 +25,7 @@ float ggxVisibility(float nl, float nv, float alpha) {
   const float a2 = alpha * alpha;
   const float gv = nl * sqrt(nv * nv * (1.0 - a2) + a2);
   const float gl = nv * sqrt(nl * nl * (1.0 - a2) + a2);
-  return 0.5 / (gv + gl);
+  return MUTANT(45, 1.0 / ((nl + sqrt(nl * nl * (1.0 - a2) + a2)) * (nv + sqrt(nv * nv * (1.0 - a2) + a2))), 0.5 / (gv + gl));
 }
 
 vec3 schlick(Surface s, float vh) {
@@ -43,8 +44,8 @@ vec3 bsdfCos(Surface s, vec3 l) {
   if (nl <= 0.0 || dot(s.geometricNormal, l) <= 0.0) return vec3(0.0);
   const float nv = max(dot(s.normal, s.view), 0.0);
   const vec3 h = normalize(l + s.view);
-  const vec3 f = schlick(s, dot(s.view, h));
-  const vec3 diffuse = (1.0 - f) * s.diffuse / kPi;
+  const vec3 f = schlick(s, MUTANT(44, nv, dot(s.view, h)));
+  const vec3 diffuse = MUTANT(46, vec3(1.0), 1.0 - f) * s.diffuse / kPi;
   vec3 specular = f * (ggxD(s.normal, h, s.alpha) * ggxVisibility(nl, nv, s.alpha));
 #ifdef SCENE_ENERGY_COMPENSATION
   specular *= s.compensation;

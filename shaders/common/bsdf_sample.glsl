@@ -4,6 +4,7 @@
 #ifndef WEIR_BSDF_SAMPLE
 #define WEIR_BSDF_SAMPLE
 
+#include "mutants.glsl"
 #include "bsdf.glsl"
 
 // Right-handed, with n as its z axis (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017).
@@ -54,7 +55,7 @@ vec3 sampleBsdf(Surface s, vec3 u) {
 
 // Density of sampleBsdf() per steradian.
 float bsdfDensity(Surface s, vec3 l) {
-  return mix(max(dot(s.normal, l), 0.0) / kPi, specularDensity(s, l), specularShare(s));
+  return mix(max(dot(s.normal, l), 0.0) / kPi, specularDensity(s, l), MUTANT(63, 0.5, specularShare(s)));
 }
 
 // Below this α the specular lobe is so narrow that points on lights must be looked for along it: its peak is 1 / (π α²).

@@ -7,6 +7,7 @@
 #ifndef WEIR_ENVIRONMENT
 #define WEIR_ENVIRONMENT
 
+#include "mutants.glsl"
 #include "random_bits.glsl"
 
 const float kEnvironmentPi = 3.14159265358979;
@@ -44,7 +45,8 @@ EnvironmentPoint environmentPoint(uint place) {
   const bool south = low.y + high.y > 1.0;
   const vec2 ends = south ? 1.0 - vec2(high.y, low.y) : vec2(low.y, high.y);
   const vec2 halfSine = sin(ends * (0.5 * kEnvironmentPi));
-  const float square = mix(halfSine.x * halfSine.x, halfSine.y * halfSine.y, south ? 1.0 - part.y : part.y);
+  const float along = south ? 1.0 - part.y : part.y;
+  const float square = mix(halfSine.x * halfSine.x, halfSine.y * halfSine.y, MUTANT(49, along * along, along));
   const float fromPole = atan(sqrt(square), sqrt(1.0 - square)) * (2.0 / kEnvironmentPi);
   p.uv.y = south ? 1.0 - fromPole : fromPole;
   const float sine = 2.0 * sqrt(square * (1.0 - square)), cosine = 1.0 - 2.0 * square;

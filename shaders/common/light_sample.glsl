@@ -3,6 +3,7 @@
 #ifndef WEIR_LIGHT_SAMPLE
 #define WEIR_LIGHT_SAMPLE
 
+#include "mutants.glsl"
 #include "bsdf_sample.glsl"
 #include "lights.glsl"
 #include "spherical_triangle.glsl"
@@ -40,8 +41,8 @@ float triangleDensity(Light light, LightSample at, SphericalTriangle t, Surface 
   if (t.near && !(t.solidAngle > 0.0)) return 0.0;
   if (lobe == 0.0 && !t.near) return 1.0 / light.area;
   const float perArea = steradianPerArea(light, at, surface.position);
-  float density = (1.0 - lobe) * (t.near ? perArea / t.solidAngle : 1.0 / light.area);
-  if (lobe > 0.0) density += lobe * specularDensity(surface, at.direction) * perArea;
+  float density = MUTANT(52, 1.0, 1.0 - lobe) * (MUTANT(53, false, t.near) ? perArea / t.solidAngle : 1.0 / light.area);
+  if (lobe > 0.0) density += MUTANT(51, 0.0, lobe) * specularDensity(surface, at.direction) * perArea;
   return density;
 }
 
@@ -100,7 +101,7 @@ float hitDensity(Light light, vec2 lightBarycentrics, Surface surface, TriangleW
   const float perArea = steradianPerArea(light, at, surface.position);
   if (!(perArea > 0.0)) return 0.0;
   const float density = triangleDensity(light, at, seenTriangle(light, surface, ways), surface, lobeShareOf(ways, surface));
-  return mixedPdf(light, uniformShare) * density / perArea;
+  return mixedPdf(light, uniformShare) * density / MUTANT(62, 1.0, perArea);
 }
 
 #ifdef SCENE_ENVIRONMENT
@@ -109,7 +110,7 @@ float missDensity(vec3 direction, float uniformShare) {
   if (lightCount() == 0u) return 0.0;
   const Light last = sceneLights[lightCount() - 1u];
   if ((last.kind & kKindMask) != kEnvironment) return 0.0;
-  return mixedPdf(last, uniformShare) * environmentDensity(environmentPlace(direction));
+  return MUTANT(66, last.pdf, mixedPdf(last, uniformShare)) * environmentDensity(environmentPlace(direction));
 }
 #endif
 

@@ -3,6 +3,7 @@
 #ifndef WEIR_LIGHTS
 #define WEIR_LIGHTS
 
+#include "mutants.glsl"
 #include "random_bits.glsl"
 #include "scene.glsl"
 #include "surface.glsl"
@@ -39,7 +40,9 @@ uint pickMixed(uvec2 bits, float uniformShare) {
   const float u = unitFromBits(bits.y), byPower = 1.0 - uniformShare;
   return u < byPower ? pickLight(bits.x, u / byPower) : scaleBits(bits.x, lightCount());
 }
-float mixedPdf(Light light, float uniformShare) { return mix(light.pdf, 1.0 / float(lightCount()), uniformShare); }
+float mixedPdf(Light light, float uniformShare) {
+  return MUTANT(43, light.pdf, mix(light.pdf, 1.0 / float(lightCount()), uniformShare));
+}
 
 // 32-bit place on a light from two uniform numbers.
 uint packPlace(vec2 u) { return uint(u.x * 65536.0) | (uint(u.y * 65536.0) << 16u); }
@@ -47,7 +50,7 @@ uint packPlace(vec2 u) { return uint(u.x * 65536.0) | (uint(u.y * 65536.0) << 16
 // Uniform over the triangle (Osada et al. 2002): barycentrics of vertices 1 and 2.
 vec2 placeOnTriangle(uint place) {
   const vec2 u = (vec2(place & 0xffffu, place >> 16u) + 0.5) / 65536.0;
-  const float root = sqrt(u.x);
+  const float root = MUTANT(40, pow(u.x, 0.45), sqrt(u.x));
   return vec2(root * (1.0 - u.y), root * u.y);
 }
 
@@ -121,11 +124,11 @@ LightSample evaluatePunctual(Light light, vec3 position) {
   float attenuation = 1.0 / d2;
   if (light.b.z > 0.0) {
     const float q = d2 / (light.b.z * light.b.z);
-    attenuation *= clamp(1.0 - q * q, 0.0, 1.0);
+    attenuation *= clamp(1.0 - MUTANT(42, q, q * q), 0.0, 1.0);
   }
   if (kind == kSpot) {
     const float t = clamp((dot(-s.direction, light.a) - light.b.y) * light.b.x, 0.0, 1.0);
-    attenuation *= t * t;
+    attenuation *= MUTANT(41, t, t * t);
   }
   s.radiance = d2 > 0.0 ? light.radiance * attenuation : vec3(0.0);
   return s;

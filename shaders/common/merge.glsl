@@ -16,6 +16,7 @@
 #ifndef WEIR_MERGE
 #define WEIR_MERGE
 
+#include "mutants.glsl"
 #include "reservoir.glsl"
 
 // Defined by the pass. A neighbour's reservoir has the confidence with which it counts here.
@@ -25,15 +26,19 @@ Surface neighbourSurface(uint i);
 float nextChance();  // uniform in [0, 1), a new one each time
 
 #if defined(PREVIOUS_DOMAIN) && defined(SCENE_ANIMATED)
-LightSample lightThere(uint light, uint place, vec3 position) { return evaluateLight(scenePreviousLights[light], place, position); }
+LightSample lightThere(uint light, uint place, vec3 position) { 
+  return evaluateLight(MUTANT(2, sceneLights[light], scenePreviousLights[light]), place, position);
+}
 #ifdef CAN_TRACE
-float visibilityThere(Surface neighbour, LightSample light) { return traceVisibilityPrevious(neighbour, light); }
+float visibilityThere(Surface neighbour, LightSample light) {
+  return MUTANT(3, traceVisibility(neighbour, light), traceVisibilityPrevious(neighbour, light));
+}
 #endif
 // What a density per m² of the neighbour's light is per m² of the light here.
 float measureThere(LightSample there, LightSample here) { return there.area / here.area; }
 float weightHere(Reservoir r, LightSample here) {
   const float before = scenePreviousLights[lightOf(r)].area;  // 0: not a triangle
-  return before > 0.0 ? r.weight * (here.area / before) : r.weight;
+  return before > 0.0 ? r.weight * MUTANT(5, 1.0, here.area / before) : r.weight;
 }
 #else
 LightSample lightThere(uint light, uint place, vec3 position) { return evaluateLight(light, place, position); }
@@ -48,7 +53,7 @@ float weightHere(Reservoir r, LightSample here) { return r.weight; }
 float neighbourTarget(Surface neighbour, LightSample light, bool seen) {
   float target = targetFunction(neighbour, light);
 #ifdef VISIBILITY_RAYS
-  if (target > 0.0 && !seen) target *= visibilityThere(neighbour, light);
+  if (target > 0.0 && !seen) target *= MUTANT(6, 1.0, visibilityThere(neighbour, light));
 #endif
   return target;
 }
@@ -57,7 +62,7 @@ float neighbourTarget(Surface neighbour, LightSample light, bool seen) {
 Reservoir finishMerge(Selection selection, Surface surface, float confidence) {
   Reservoir merged = finish(selection, confidence);
 #ifdef VISIBILITY_RAYS
-  testVisibility(merged, surface);
+  if (MUTANT(7, false, true)) testVisibility(merged, surface);
 #endif
   return merged;
 }

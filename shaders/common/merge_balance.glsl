@@ -16,13 +16,13 @@ Reservoir merge(Surface surface, Reservoir own) {
     if (!(target > 0.0)) continue;
     // Visibility is part of the others' targets, not of this pixel's: hidden here is gone by the test at the end.
     float sum = own.confidence * target;
-    float itsOwn = sum;
+    float itsOwn = MUTANT(23, target, sum);
     for (uint j = 0u; j < count; ++j) {
       const Surface neighbour = neighbourSurface(j);
       const LightSample there = lightThere(lightOf(r), r.place, neighbour.position);
       const float theirs = neighbourReservoir(j).confidence * neighbourTarget(neighbour, there, j == i && isSeen(r)) *
                            measureThere(there, here);
-      sum += theirs;
+      sum += MUTANT(22, j == i ? theirs : 0.0, theirs);
       if (j == i) itsOwn = theirs;
     }
     const float weight = isOwn ? r.weight : weightHere(r, here);

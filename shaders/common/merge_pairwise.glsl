@@ -20,10 +20,16 @@ Reservoir merge(Surface surface, Reservoir own) {
     const Surface neighbour = neighbourSurface(i);
     const float chance = nextChance();
     if (ownTarget > 0.0) {
+      Surface paired = neighbour;
+#ifdef WEIR_MUTANT
+      paired.view = MUTANT(8, surface.view, paired.view);
+      paired.normal = MUTANT(9, surface.normal, paired.normal);
+      paired.diffuse = MUTANT(11, surface.diffuse, paired.diffuse);
+#endif
       const LightSample there = lightThere(lightOf(own), own.place, neighbour.position);
       const float here = own.confidence * ownTarget;
-      const float theirs = others * neighbourTarget(neighbour, there, false) * measureThere(there, ownLight);
-      ownMis += r.confidence / total * (here / (here + theirs));
+      const float theirs = others * neighbourTarget(paired, there, false) * measureThere(there, ownLight);
+      ownMis += MUTANT(17, 0.0, r.confidence / total * (here / (here + theirs)));
     }
     if (isNull(r)) continue;
     const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
@@ -31,9 +37,10 @@ Reservoir merge(Surface surface, Reservoir own) {
     if (!(target > 0.0)) continue;
     float weight = r.confidence / total;
     const LightSample there = lightThere(lightOf(r), r.place, neighbour.position);
-    const float theirs = others * neighbourTarget(neighbour, there, isSeen(r)) * measureThere(there, here);
-    weight *= theirs / (own.confidence * target + theirs);
-    offer(selection, lightOf(r), r.place, target, weight * target * weightHere(r, here), false, chance);
+    const float theirs = MUTANT(18, r.confidence, others) * neighbourTarget(neighbour, there, isSeen(r)) * measureThere(there, here);
+    weight *= MUTANT(21, 1.0, theirs / (own.confidence * target + theirs));
+    offer(selection, lightOf(r), r.place, target, 
+          weight * MUTANT(19, targetFunction(neighbour, there), target) * weightHere(r, here), MUTANT(20, isSeen(r), false), chance);
   }
   const float chance = nextChance();
   if (ownTarget > 0.0) {

@@ -34,11 +34,11 @@ Reservoir merge(Surface surface, Reservoir own) {
   for (uint i = 0u; i < count; ++i) {
     const Surface neighbour = neighbourSurface(i);
     const LightSample there = lightThere(lightOf(merged), merged.place, neighbour.position);
-    if (neighbourTarget(neighbour, there, i == from && seenThere) > 0.0) {
+    if (MUTANT(24, 1.0, neighbourTarget(neighbour, there, i == from && seenThere)) > 0.0) {
       z += neighbourReservoir(i).confidence;
     } else if (i == from) {
       // Hidden where it comes from: not of its own domain, whose part of the sum is in the others' weights.
-      return nullReservoir(total);
+      if (MUTANT(25, false, MUTANT(7, false, true))) return nullReservoir(total);
     }
   }
   merged.weight *= total / z;

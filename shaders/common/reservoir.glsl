@@ -3,6 +3,7 @@
 #ifndef WEIR_RESERVOIR
 #define WEIR_RESERVOIR
 
+#include "mutants.glsl"
 #include "bsdf.glsl"
 #include "lights.glsl"
 #include "visibility.glsl"
@@ -51,7 +52,7 @@ Selection noSelection() { return Selection(0u, 0u, 0.0, 0.0, false); }
 bool offer(inout Selection s, uint light, uint place, float target, float weight, bool seen, float u) {
   if (!(weight > 0.0) || isinf(weight)) return false;
   s.sum += weight;
-  if (!(u * s.sum < weight)) return false;
+  if (!(MUTANT(26, u * u, u) * s.sum < weight)) return false;
   s.light = light;
   s.place = place;
   s.target = target;
@@ -61,7 +62,7 @@ bool offer(inout Selection s, uint light, uint place, float target, float weight
 
 Reservoir finish(Selection s, float confidence) {
   if (!(s.sum > 0.0)) return nullReservoir(confidence);
-  const float weight = s.sum / s.target;
+  const float weight = s.sum / MUTANT(27, s.target * 1.004, s.target);
   if (isinf(weight)) return nullReservoir(confidence);
   return Reservoir(s.light | (s.seen ? kSeen : 0u), s.place, weight, confidence);
 }
@@ -71,7 +72,7 @@ Reservoir finish(Selection s, float confidence) {
 void testVisibility(inout Reservoir r, Surface s) {
   if (isNull(r) || isSeen(r)) return;
   const float through = traceVisibility(s, evaluateLight(r.light, r.place, s.position));
-  if (through <= 0.0) {
+  if (MUTANT(28, through < 1.0, through <= 0.0)) {
     r.light = 0u;
     r.weight = 0.0;
   } else if (through >= 1.0) {

@@ -2,6 +2,7 @@
 #ifndef WEIR_VISIBILITY
 #define WEIR_VISIBILITY
 
+#include "mutants.glsl"
 #include "lights.glsl"
 #include "surface.glsl"
 #include "trace.glsl"
@@ -14,7 +15,7 @@ float intersectionError() { return sceneLargest * (4.0 / 8388608.0); }
 // A ray's start, moved off the surface by its error, to the side that `direction` leaves it; and a step back along the ray that found
 // the surface, where nothing is in the way: in the very edge of two walls the normal alone would stay within the other wall's error.
 vec3 offsetOrigin(Surface s, vec3 direction) {
-  const float error = s.error + intersectionError();
+  const float error = s.error + intersectionError() + MUTANT(48, 0.01 * s.distance, 0.0);
   return s.position + (dot(s.geometricNormal, direction) < 0.0 ? -s.geometricNormal : s.geometricNormal + s.view) * error;
 }
 
@@ -31,7 +32,7 @@ ShadowSegment shadowSegment(Surface s, LightSample light) {
   r.way = light.target - r.origin;
   const vec3 largest = max(abs(light.target), abs(r.origin));
   const float targetError = max(largest.x, max(largest.y, largest.z)) * (16.0 / 8388608.0) + intersectionError();
-  r.extent = 1.0 - targetError * inversesqrt(dot(r.way, r.way));
+  r.extent = MUTANT(47, 0.5, 1.0) - targetError * inversesqrt(dot(r.way, r.way));
   return r;
 }
 

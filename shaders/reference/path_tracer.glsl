@@ -1,6 +1,7 @@
 // Path tracing from the camera's surfaces (Kajiya 1986). At every vertex one light sample with its shadow ray, and one direction by the
 // BSDF with the ray that finds the next vertex; light that both can find is weighed by the balance heuristic with the densities of
 // exactly what is drawn (Veach 1997). Nothing is reused, clamped or cached.
+#include "mutants.glsl"
 #include "random.glsl"
 #include "light_sample.glsl"
 #include "visibility.glsl"
@@ -27,7 +28,7 @@ vec3 lightAt(Surface surface, inout Random random) {
   float density = mixedPdf(light, param_uniformShare) / c.spread;
   if (isArea && param_lightSampling == kBoth) {
     const float measure = kind == kTriangle ? steradianPerArea(light, c.light, surface.position) : 1.0;
-    density += bsdfDensity(surface, c.light.direction) * measure;
+    density += MUTANT(60, 0.0, bsdfDensity(surface, c.light.direction) * measure);
   }
   return f * (traceVisibility(surface, c.light) / density);
 }
@@ -43,7 +44,7 @@ vec3 tracePath(Surface surface, inout Random random) {
   vec3 sum = vec3(0.0), throughput = vec3(1.0);
   for (int bounce = 0;; ++bounce) {
     sum += throughput * lightAt(surface, random);
-    const bool last = bounce == param_maxBounces;
+    const bool last = MUTANT(64, bounce + 1, bounce) == param_maxBounces;
     if (last && param_lightSampling == kByLights) break;
 
     const vec3 direction = sampleBsdf(surface, next4(random).xyz);
@@ -72,7 +73,7 @@ vec3 tracePath(Surface surface, inout Random random) {
         const Light light = sceneLights[index];
         byLights = hitDensity(light, turnedBarycentrics(light, hit.barycentrics), surface, triangleWays(), param_uniformShare);
       }
-      sum += throughput * found.emission * weightOf(density, byLights);
+      sum += throughput * found.emission * MUTANT(65, 1.0, weightOf(density, byLights));
     }
     if (last) break;
 
@@ -80,7 +81,7 @@ vec3 tracePath(Surface surface, inout Random random) {
     if (bounce >= param_rouletteStart) {
       const float survival = min(max(throughput.r, max(throughput.g, throughput.b)), 1.0);
       if (!(unitFromBits(coins.y) < survival)) break;
-      throughput /= survival;
+      throughput /= MUTANT(61, 1.0, survival);
     }
     surface = surfaceFrom(found, direction);
   }

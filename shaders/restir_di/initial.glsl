@@ -1,6 +1,7 @@
 // Initial candidates by streaming RIS (Talbot et al. 2005; Bitterli et al. 2020, algorithm 3): M lights picked by power, one kept in
 // proportion to p̂/p. The environment is also found by directions that the BSDF prefers, points on triangles along its specular lobe,
 // and both by rays along the BSDF. Several reservoirs of a pixel share the candidates and choose from them independently.
+#include "mutants.glsl"
 #include "random.glsl"
 #include "reservoir.glsl"
 #include "light_sample.glsl"
@@ -31,7 +32,7 @@ Candidate drawCandidate(Light light, uvec2 bits, Surface surface, inout Random r
 #ifdef BSDF_RAYS
 float triangleWeight(Surface surface, Light light, LightSample at, float density, float target) {
   return target / (float(param_candidates) * mixedPdf(light, param_uniformShare) * density +
-                   float(param_bsdfRays) * bsdfDensity(surface, at.direction) * steradianPerArea(light, at, surface.position));
+                   float(param_bsdfRays) * bsdfDensity(surface, at.direction) * MUTANT(32, 1.0, steradianPerArea(light, at, surface.position)));
 }
 #endif
 
@@ -43,7 +44,7 @@ float environmentWeight(Surface surface, Light environment, LightSample light, f
   const float byBsdf = float(param_bsdfCandidates);
 #endif
   return target / (float(param_candidates) * mixedPdf(environment, param_uniformShare) * density +
-                   byBsdf * bsdfDensity(surface, light.direction));
+                   MUTANT(31, 0.0, byBsdf) * bsdfDensity(surface, light.direction));
 }
 #endif
 
@@ -75,7 +76,8 @@ void offerRay(inout Selection selections[out_reservoirs_count], Surface surface,
     if (!(target > 0.0)) return;
     const SphericalTriangle t = seenTriangle(light, surface, triangleWays());
     const float density = triangleDensity(light, at, t, surface, lobeShareOf(triangleWays(), surface));
-    weight = triangleWeight(surface, light, at, density, target) / triangleCoverage(hit.triangle, hit.barycentrics);
+    weight = MUTANT(33, target / (float(param_bsdfRays) * bsdfDensity(surface, at.direction) * steradianPerArea(light, at, surface.position)),
+                    triangleWeight(surface, light, at, density, target)) / triangleCoverage(hit.triangle, hit.barycentrics);
   } else {
 #ifdef SCENE_ENVIRONMENT
     chosen = lightCount() - 1u;
@@ -120,7 +122,7 @@ void run(uvec2 pixel) {
       const float target = targetFunction(surface, c.light);
       if (!(target > 0.0)) continue;
       // 1/M · p̂ / p, with p = pdf of the light times density on it.
-      float weight = target * c.spread / (mixedPdf(light, param_uniformShare) * float(param_candidates));
+      float weight = target * c.spread / (mixedPdf(light, param_uniformShare) * float(MUTANT(30, param_candidates + 1, param_candidates)));
 #ifdef BSDF_RAYS
       if ((light.kind & kKindMask) == kTriangle) weight = triangleWeight(surface, light, c.light, 1.0 / c.spread, target);
 #endif

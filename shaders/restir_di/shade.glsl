@@ -1,4 +1,5 @@
 // The picture: f(y) · V(y) · W(y), the mean over the pixel's reservoirs, plus what the surface itself emits.
+#include "mutants.glsl"
 #include "reservoir.glsl"
 
 void run(uvec2 pixel) {
@@ -17,9 +18,9 @@ void run(uvec2 pixel) {
       // A sample that was seen from this very pixel needs no second ray.
       float through = 1.0;
 #ifdef FINAL_VISIBILITY
-      if (!isSeen(r)) through = traceVisibility(surface, light);
+      if (MUTANT(1, false, !isSeen(r))) through = traceVisibility(surface, light);
 #endif
-      sum += f * (r.weight * through);
+      sum += MUTANT(29, min(f * (r.weight * through), vec3(1.0)), f * (r.weight * through));
     }
     color += sum / float(in_reservoirs_count);
   }

@@ -1,5 +1,6 @@
 // Spatial reuse: each pixel's reservoirs are merged with those of pixels around it whose surfaces are alike.
 // Bitterli et al. 2020, section 4. One launch an iteration; launchIndex is its number.
+#include "mutants.glsl"
 #include "random.glsl"
 #include "merge.glsl"
 
@@ -12,10 +13,25 @@ uint which = 0u;  // of a pixel's samples
 Random random;
 
 uint neighbourCount() { return found; }
-Reservoir neighbourReservoir(uint i) { return in_reservoirs[neighbours[i] * kPerPixel + which]; }
+#ifdef WEIR_MUTANT
+Surface centre;
+#endif
+Reservoir neighbourReservoir(uint i) {
+  Reservoir r = in_reservoirs[neighbours[i] * kPerPixel + which];
+  if (MUTANT(12, isNull(r), false)) r.confidence = 0.0;
+#ifdef WEIR_MUTANT
+  if (WEIR_MUTANT == 13 && !isNull(r) &&
+      targetFunction(centre, evaluateLight(lightOf(r), r.place, centre.position)) <= 0.0) r.confidence = 0.0;
+#endif
+  return r;
+}
 Surface neighbourSurface(uint i) {
   const uint n = neighbours[i];
-  return unpackSurface(in_surface[n], uvec2(n % frameWidth, n / frameWidth), camera, frameSize);
+  Surface s = unpackSurface(in_surface[n], uvec2(n % frameWidth, n / frameWidth), camera, frameSize);
+#ifdef WEIR_MUTANT
+  s.position = MUTANT(10, centre.position, s.position);
+#endif
+  return s;
 }
 float nextChance() { return next1(random); }
 
@@ -45,6 +61,9 @@ void run(uvec2 pixel) {
   }
   const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
   random = randomFor(pixel, launchIndex);
+#ifdef WEIR_MUTANT
+  centre = surface;
+#endif
   findNeighbours(pixel, packed);
   for (which = 0u; which < kPerPixel; ++which) {
     const uint at = index * kPerPixel + which;

@@ -2,6 +2,7 @@
 // Bitterli et al. 2020, section 4; the history counts at most `confidenceCap` fresh frames. The history's target is that of LAST
 // frame's surface, camera, lights and geometry.
 #define PREVIOUS_DOMAIN 1
+#include "mutants.glsl"
 #include "random.glsl"
 #include "merge.glsl"
 
@@ -48,13 +49,14 @@ void run(uvec2 pixel) {
     for (uint k = 0u; k < kPerPixel; ++k) out_reservoirs[index * kPerPixel + k] = in_reservoirs[index * kPerPixel + k];
     return;
   }
-  beforeSurface = unpackSurface(beforePacked, uvec2(before), previousCamera, frameSize);
+  beforeSurface = unpackSurface(beforePacked, uvec2(before), MUTANT(14, camera, previousCamera), frameSize);
   Random random = randomFor(pixel, 0u);
   for (uint k = 0u; k < kPerPixel; ++k) {
     const Reservoir own = in_reservoirs[index * kPerPixel + k];
     history = sanitized(in_history[beforeIndex * kPerPixel + k]);
+    if (MUTANT(15, isNull(history), false)) history.confidence = 0.0;
     history.confidence = min(history.confidence, float(param_confidenceCap) * own.confidence);
-    chances = next4(random);
+    chances = MUTANT(16, vec4(0.5), next4(random));
     out_reservoirs[index * kPerPixel + k] = merge(surface, own);
   }
 }
