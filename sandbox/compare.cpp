@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 struct Options {
   std::string picture, reference, mask;
   uint32_t tiles = 0;
-  bool json = false, force = false;
+  bool json = false, force = false, noFlip = false;
 };
 
 struct Comparison {
@@ -55,7 +55,7 @@ Comparison compare(const Options& options) {
   if (!options.mask.empty()) mask = image::readPicture(options.mask);
   const image::Picture* maskOrAll = options.mask.empty() ? nullptr : &mask;
   result.hdr = radiance;
-  result.metrics = image::measure(picture, reference, {.mask = maskOrAll, .hdr = result.hdr});
+  result.metrics = image::measure(picture, reference, {.mask = maskOrAll, .hdr = result.hdr, .flip = !options.noFlip});
   if (options.tiles > 0) result.tiles = image::compareTiles(picture, reference, options.tiles, maskOrAll);
   return result;
 }
@@ -114,8 +114,10 @@ void printTable(const Options& options, const Comparison& c) {
   figure("  without worst ‰", m.relMseTrimmed);
   figure("  median pixel", m.relMseMedian);
   figure("MAPE", m.mape);
-  figure(c.hdr ? "HDR-FLIP mean" : "LDR-FLIP mean", m.flipMean);
-  figure("  p99", m.flipP99);
+  if (!options.noFlip) {
+    figure(c.hdr ? "HDR-FLIP mean" : "LDR-FLIP mean", m.flipMean);
+    figure("  p99", m.flipP99);
+  }
   row("bias R G B", fmt::format("{:>12.4g} {:>12.4g} {:>12.4g}", m.biasR, m.biasG, m.biasB));
   row("relative bias", fmt::format("{:>+12.4f} %", 100 * m.relativeBias));
   if (options.tiles == 0) return;
@@ -141,6 +143,7 @@ void addCompareCommand(CLI::App& app) {
       ->check(CLI::Range(1, 65536));
   command->add_flag("--json", options->json, "everything as JSON, with every tile");
   command->add_flag("--force", options->force, "compares pictures of different scenes, cameras or lights too");
+  command->add_flag("--no-flip", options->noFlip, "leaves FLIP out, which takes most of the time");
   command->callback([options] {
     const Comparison comparison = compare(*options);
     options->json ? printJson(*options, comparison) : printTable(*options, comparison);

@@ -73,7 +73,7 @@ def main():
              "radiance=" + picture, "--stats", stats)
         with open(stats) as file:
             figures = json.load(file)
-        error = json.loads(weir("compare", picture, reference, "--json"))
+        error = json.loads(weir("compare", picture, reference, "--json", "--no-flip"))
         return {
             "settings": settings,
             "device": figures["device"],

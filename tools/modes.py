@@ -56,7 +56,7 @@ class Weir:
         return self.run("render", graph, *self.words, *words)
 
     def compare(self, picture, reference):
-        return json.loads(self.run("compare", picture, reference, "--json"))
+        return json.loads(self.run("compare", picture, reference, "--json", "--no-flip"))
 
 
 def measure(weir, graph, settings, args, reference, work):

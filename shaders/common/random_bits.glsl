@@ -9,6 +9,12 @@ uint scaleBits(uint bits, uint n) {
   return high;
 }
 
+// A number in one of `strata` equal parts of the 32 bits' range; fewer than `strata` numbers at its end are never reached.
+uint stratumBits(uint bits, uint stratum, uint strata) {
+  const uint width = 0xffffffffu / strata;
+  return stratum * width + scaleBits(bits, width);
+}
+
 // In [0, 1]; small numbers keep all their bits, so that comparing with a small probability is right.
 float unitFromBits(uint bits) { return float(bits) * (1.0 / 4294967296.0); }
 

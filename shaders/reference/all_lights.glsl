@@ -82,8 +82,7 @@ LightSample sampleByImportance(Surface surface, uint j, uint strata, inout Rando
   float density;
   if (j < strata) {
     uvec4 bits = nextBits4(random);
-    const uint width = 0xffffffffu / strata;
-    bits.x = j * width + scaleBits(bits.x, width);
+    bits.x = stratumBits(bits.x, j, strata);
     float spread;
     s = evaluateEnvironment(pickEnvironment(bits, spread), surface.position);
     density = 1.0 / spread;

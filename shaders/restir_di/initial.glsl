@@ -115,7 +115,9 @@ void run(uvec2 pixel) {
     surface = unpackSurface(packed, pixel, camera, frameSize);
     Random random = randomFor(pixel, 0u);
     for (int i = 0; i < param_candidates; ++i) {
-      const uvec4 bits = nextBits4(random);
+      uvec4 bits = nextBits4(random);
+      // One pick in each part of the table: together they have its distribution, with less chance in how often a light comes.
+      bits.x = stratumBits(bits.x, uint(i), uint(param_candidates));
       const uint chosen = pickMixed(bits.xy, param_uniformShare);
       const Light light = sceneLights[chosen];
       const Candidate c = drawCandidate(light, bits.zw, surface, random);

@@ -3,7 +3,6 @@
 #include <weir/core/error.h>
 #include <weir/core/stopwatch.h>
 #include <weir/core/text.h>
-#include <weir/execute/executor.h>
 #include <weir/graph/compile.h>
 #include <weir/render/mean.h>
 #include <weir/render/render.h>
@@ -11,13 +10,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "support/device.h"
 
 namespace weir::test {
 namespace {
 
-constexpr uint32_t kTile = 16;
+constexpr uint32_t kTile = 16, kCoarseTile = 64;  // pixels
 constexpr uint32_t kReferenceSeed = 0x5eed0000u;  // far from every seed that is tested
 
 uint32_t scaledBy(uint32_t restarts, double effort) {
@@ -41,41 +41,38 @@ Laboratory::Laboratory(const gpu::Device& device, const Situation& situation, do
   // Where things move, the reference shows the frame that is looked at, and nothing before it.
   const uint32_t first = moves(situation_, stage_) ? situation_.frames - 1 : 0;
   const std::vector<std::string> nothing;
-  const image::RestartAccumulator reference =
-      run({situation_.reference, situation_.referenceSet, nothing, scaledBy(situation_.referenceRestarts, effort), 1,
-           first, kReferenceSeed},
-          stage_.prepared, *scene_, 0);
-  truth_ = reference.mean();
-  truthError_ = reference.standardError();
+  const Words words{
+      situation_.reference, situation_.referenceSet, nothing, scaledBy(situation_.referenceRestarts, effort), 1, first,
+      kReferenceSeed};
+  truth_ = run(*executor(words, *scene_, compiler_), words, stage_).evidence();
 }
 
 Laboratory::~Laboratory() = default;
 
-image::RestartAccumulator Laboratory::run(const Words& words, const scene::PreparedScene& prepared,
-                                          const scene::SceneGpu& scene, int mutant) {
-  std::vector<std::pair<std::string, std::string>> defines;
-  if (mutant > 0) defines.emplace_back("WEIR_MUTANT", std::to_string(mutant));
-  shader::Compiler compiler({}, std::move(defines));
+std::unique_ptr<execute::Executor> Laboratory::executor(const Words& words, const scene::SceneGpu& scene,
+                                                        shader::Compiler& compiler) {
   graph::Overrides overrides;
   overrides.set = words.set;
   overrides.disable = words.disable;
-  execute::Executor executor(
+  execute::ExecutorOptions options;
+  options.backend = trace::chooseBackend("auto", device_);
+  return std::make_unique<execute::Executor>(
       device_, compiler, registry_, scene,
       graph::compileFile(sourcePath(words.graph), overrides, registry_.catalog(), situation_.size, situation_.size),
-      {.backend = trace::chooseBackend("auto", device_)});
-  render::Stage stage = stage_;
-  stage.prepared = prepared;
+      options);
+}
+
+image::EvidenceCollector Laboratory::run(execute::Executor& executor, const Words& words, const render::Stage& stage) {
   render::Player player(stage);
-  image::RestartAccumulator result(kTile);
+  image::EvidenceCollector result(kTile, kCoarseTile);
   render::FrameMean mean;
   const bool last = moves(situation_, stage);
-  uint32_t taken = 0;
   const uint32_t wanted = last ? 1 : words.frames;
+  uint32_t taken = 0;
   executor.captureTo({"radiance"}, [&](const std::string&, const image::Picture& picture) {
     mean.add(picture);
     if (++taken < wanted) return;
-    result.add(mean.mean());
-    mean = render::FrameMean();
+    result.add(std::exchange(mean, {}).mean());
     taken = 0;
   });
   for (uint32_t r = 0; r < words.restarts; ++r) {
@@ -92,27 +89,37 @@ image::RestartAccumulator Laboratory::run(const Words& words, const scene::Prepa
 
 Finding Laboratory::examine(const Mutant* mutant, uint32_t seed) {
   const Clock::time_point start = Clock::now();
-  scene::PreparedScene prepared = stage_.prepared;
-  std::unique_ptr<scene::SceneGpu> broken;
-  if (mutant != nullptr && mutant->host) {
-    mutant->host(prepared);
-    broken = std::make_unique<scene::SceneGpu>(device_, stage_.scene, prepared, true);
-  }
-  const image::RestartAccumulator measured =
-      run({situation_.graph, situation_.set, situation_.disable, scaledBy(situation_.restarts, effort_),
-           situation_.frames, 0, seed},
-          prepared, broken ? *broken : *scene_, mutant != nullptr && !mutant->host ? mutant->number : 0);
-  // Half of the false alarms for the tiles, half for the whole.
-  const image::TileTest t =
-      image::tileTest(measured.tiles(), truth_, &truthError_, {.alpha = 0.5 * alpha_, .eachColour = true});
+  const Words words{situation_.graph,
+                    situation_.set,
+                    situation_.disable,
+                    scaledBy(situation_.restarts, effort_),
+                    situation_.frames,
+                    0,
+                    seed};
+  const auto collect = [&] {
+    if (mutant == nullptr) {
+      if (!clean_) clean_ = executor(words, *scene_, compiler_);
+      return run(*clean_, words, stage_);
+    }
+    if (!mutant->host) {
+      shader::Compiler compiler({}, {{"WEIR_MUTANT", std::to_string(mutant->number)}});
+      return run(*executor(words, *scene_, compiler), words, stage_);
+    }
+    render::Stage stage = stage_;
+    mutant->host(stage.prepared);
+    const scene::SceneGpu broken(device_, stage.scene, stage.prepared, true);
+    return run(*executor(words, broken, compiler_), words, stage);
+  };
+  const image::EvidenceCollector measured = collect();
+  const image::Verdict v = image::decide(measured.evidence(), truth_, measured.nonFinite(), {.alpha = alpha_});
+  const image::Comparison& worst = v.fine.tiles[v.fine.worst];
   Finding f;
-  f.relativeBias = t.relativeBias;
-  f.low = t.intervalLow;
-  f.high = t.intervalHigh;
-  f.worstT = t.worstT;
-  f.bound = t.bound;
-  f.compared = measured.nonFinite() == 0;
-  f.caught = !f.compared || !t.passed || !(t.intervalLow <= 0.0 && t.intervalHigh >= 0.0);
+  f.caught = v.answer == image::Answer::Biased;
+  f.relativeBias = v.whole.relative;
+  f.low = v.low;
+  f.high = v.high;
+  f.worstT = std::abs(worst.t);
+  f.bound = image::criticalT(worst.freedom, v.fine.level);
   f.seconds = millisecondsSince(start) / 1000.0;
   return f;
 }

@@ -2,8 +2,9 @@
 // with independent seeds, and holds the mean against what the situation's reference says.
 #pragma once
 
+#include <weir/execute/executor.h>
 #include <weir/gpu/device.h>
-#include <weir/image/statistics.h>
+#include <weir/image/verdict.h>
 #include <weir/pass/registry.h>
 #include <weir/render/stage.h>
 #include <weir/scene/upload.h>
@@ -47,10 +48,9 @@ struct Mutant {
 };
 
 struct Finding {
-  bool caught = false;
-  bool compared = true;                        ///< false: the picture is not finite, which counts as caught
+  bool caught = false;                         ///< the verdict is "biased"
   double relativeBias = 0, low = 0, high = 0;  ///< of the whole picture, at the test's own confidence
-  double worstT = 0, bound = 0;                ///< of the tiles
+  double worstT = 0, bound = 0;                ///< of the fine tiles
   double seconds = 0;
 };
 
@@ -73,8 +73,9 @@ class Laboratory {
     const std::vector<std::string>&set, &disable;
     uint32_t restarts, frames, firstFrame, seed;
   };
-  image::RestartAccumulator run(const Words& words, const scene::PreparedScene& prepared, const scene::SceneGpu& scene,
-                                int mutant);
+  std::unique_ptr<execute::Executor> executor(const Words& words, const scene::SceneGpu& scene,
+                                              shader::Compiler& compiler);
+  image::EvidenceCollector run(execute::Executor& executor, const Words& words, const render::Stage& stage);
 
   const gpu::Device& device_;
   Situation situation_;
@@ -82,7 +83,9 @@ class Laboratory {
   Registry registry_;
   render::Stage stage_;
   std::unique_ptr<scene::SceneGpu> scene_;
-  image::Picture truth_, truthError_;
+  image::Evidence truth_;
+  shader::Compiler compiler_;                 ///< of everything without a bug
+  std::unique_ptr<execute::Executor> clean_;  ///< made once: many clean runs are asked for
 };
 
 /// All situations, and all bugs in the order of their numbers.

@@ -28,9 +28,8 @@ struct Words {
 };
 
 Json toJson(const Finding& f) {
-  return {{"caught", f.caught},          {"finite", f.compared},     {"relative_bias", f.relativeBias},
-          {"interval", {f.low, f.high}}, {"worst_tile_t", f.worstT}, {"tile_bound", f.bound},
-          {"seconds", f.seconds}};
+  return {{"caught", f.caught},       {"relative_bias", f.relativeBias}, {"interval", {f.low, f.high}},
+          {"worst_tile_t", f.worstT}, {"tile_bound", f.bound},           {"seconds", f.seconds}};
 }
 
 void print(const std::string& name, const Finding& f) {
