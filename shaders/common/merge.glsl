@@ -27,7 +27,8 @@ float nextChance();  // uniform in [0, 1), a new one each time
 
 #if defined(PREVIOUS_DOMAIN) && defined(SCENE_ANIMATED)
 LightSample lightThere(uint light, uint place, vec3 position) { 
-  return evaluateLight(MUTANT(2, sceneLights[light], scenePreviousLights[light]), place, position);
+  if (MUTANT(2, true, false)) return evaluateLight(light, place, position);
+  return evaluateLight(scenePreviousLights[light], place, position);
 }
 #ifdef CAN_TRACE
 float visibilityThere(Surface neighbour, LightSample light) {

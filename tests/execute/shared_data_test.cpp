@@ -44,7 +44,7 @@ scene::Scene varied() {
     m.metallic = 0.15f * f;
     m.roughness = 0.25f * f;
     m.normalScale = 0.35f * f;
-    m.alphaCutoff = 0.45f;
+    m.alphaCutoff = 0.35f;  // below alpha: where nothing is, nothing shines
     m.alphaMode = i == 0 ? scene::AlphaMode::Opaque : scene::AlphaMode::Mask;
     m.emission = {f, 2 * f, 3 * f};
     m.doubleSided = i == 1;

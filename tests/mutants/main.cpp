@@ -126,6 +126,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     for (const std::string& name : words.situations) situationNamed(name);
+    for (const Mutant& m : mutants()) situationNamed(m.situation);
     if (words.list) {
       for (const Mutant& m : mutants()) fmt::print("{:4} {:<18} {}\n", m.number, m.situation, m.bug);
       return 0;

@@ -256,6 +256,10 @@ std::vector<Situation> makeSituations() {
   s.push_back(initialSituation("room-initial", "candidates alone", roomStage, {"initial.candidates=16"}));
   s.push_back(initialSituation("room-area", "candidates alone, points on triangles by area", roomStage,
                                {"initial.candidates=16", "initial.triangles=area"}));
+  s.push_back(initialSituation("room-many", "many candidates", roomStage, {"initial.candidates=96"}));
+  s.push_back(initialSituation("rays", "rays along the BSDF among the candidates", glossStage,
+                               {"initial.candidates=8", "initial.bsdfRays=2"}));
+  s.push_back(initialSituation("rough", "candidates on rough metal", roughStage, {"initial.candidates=16"}));
   s.push_back(
       initialSituation("gloss", "candidates on glossy surfaces near a lamp", glossStage, {"initial.candidates=16"}));
   s.push_back(initialSituation("sky", "candidates from all around", skyStage,

@@ -145,9 +145,21 @@ scene::Scene fourPoints() {
       {{{0, 0, 1}, {1, 1, 1}}, {{1, 0, 1}, {5, 1, 1}}, {{-1, 1, 2}, {2, 9, 2}}, {{2, 2, 0.5f}, {1, 1, 8}}});
 }
 
+/// Probability of each light in one of two halves of the table's cells, a share of the picks uniform.
+std::vector<double> pickedInHalf(const std::vector<scene::AliasCell>& table, size_t half, double share) {
+  std::vector<double> p(table.size(), 0.0);
+  const size_t cells = table.size() / 2;
+  for (size_t c = half * cells; c < (half + 1) * cells; ++c) {
+    const double kept = share + (1.0 - share) * table[c].threshold;
+    p[c] += kept / static_cast<double>(cells);
+    p[table[c].alias] += (1.0 - kept) / static_cast<double>(cells);
+  }
+  return p;
+}
+
 // With M candidates of probability p (a share of them uniform, the others by power), the chosen light's distribution is
-// known exactly for M = 1 (p itself) and M = 2, and is p̂ / Σ p̂ to within 1/M for many. Chance of a false alarm: 1e-4
-// for each of the five.
+// known exactly for M = 1 (p itself) and M = 2 (one from each half of the table), and is p̂ / Σ p̂ to within 1/M for
+// many. Chance of a false alarm: 1e-4 for each of the five.
 TEST(RestirInitial, ChosenLightsFollowResampling) {
   const View view = onePointView(64, 64);
   for (const auto& [candidates, share] : {std::pair{1, 0.1}, {1, 0.0}, {1, 1.0}, {2, 0.25}, {1024, 0.1}}) {
@@ -171,9 +183,16 @@ TEST(RestirInitial, ChosenLightsFollowResampling) {
     for (size_t i = 0; i < n; ++i) {
       if (candidates == 1) expected[i] = source[i];
       if (candidates == 1024) expected[i] = target[i] / targets;
-      for (size_t j = 0; candidates == 2 && j < n; ++j) {
-        const double wi = target[i] / source[i], wj = target[j] / source[j];
-        expected[i] += 2.0 * source[i] * source[j] * wi / (wi + wj);
+    }
+    if (candidates == 2) {
+      const std::vector<double> first = pickedInHalf(t.prepared().aliasTable, 0, share),
+                                second = pickedInHalf(t.prepared().aliasTable, 1, share);
+      for (size_t i = 0; i < n; ++i) {
+        for (size_t j = 0; j < n; ++j) {
+          const double wi = target[i] / source[i], wj = target[j] / source[j];
+          expected[i] += first[i] * second[j] * wi / (wi + wj);
+          expected[j] += first[i] * second[j] * wj / (wi + wj);
+        }
       }
     }
     std::vector<uint64_t> counts(n, 0);

@@ -340,11 +340,14 @@ TEST(MaterialImport, EmissiveTexturesWeighByTheirOwnCoordinates) {
   EXPECT_TRUE(p.traits.texturedLights);
 }
 
-// Whoever uses none of the models pays for none: no line stands before his shaders.
+// Whoever uses none of the models pays for none: no line stands before his shaders but that there is a lamp.
 TEST(MaterialImport, PlainScenesHaveNoTraits) {
   const PreparedScene cornell = prepareScene(importGltf(WEIR_SOURCE_DIR "/scenes/cornell.glb"));
-  EXPECT_EQ(cornell.traits, SceneTraits{});
-  EXPECT_TRUE(traitDefines(cornell.traits).empty());
+  EXPECT_EQ(cornell.traits, SceneTraits{.triangleLights = true});
+  EXPECT_EQ(traitDefines(cornell.traits), "#define SCENE_TRIANGLE_LIGHTS 1\n");
+  const PreparedScene points = prepareScene(importGltf(WEIR_SOURCE_DIR "/scenes/cornell-1000-points.glb"));
+  EXPECT_EQ(points.traits, SceneTraits{});
+  EXPECT_TRUE(traitDefines(points.traits).empty());
   EXPECT_TRUE(cornell.colors.empty() && cornell.uvs1.empty() && cornell.speculars.empty());
 }
 
