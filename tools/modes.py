@@ -11,6 +11,7 @@ methods in opposite order. Error times time is what says which is better: an est
 Words after -- go to every `weir render`. Without --reference the reference is reference.AllLights, averaged over --reference-frames.
 """
 import argparse
+import concurrent.futures
 import itertools
 import json
 import math
@@ -59,26 +60,38 @@ class Weir:
         return json.loads(self.run("compare", picture, reference, "--json", "--no-flip"))
 
 
-def measure(weir, graph, settings, args, reference, work):
-    """One combination: times of a frame and the errors over restarts."""
-    picture, mean, stats = (os.path.join(work, name) for name in ("picture.exr", "mean.exr", "stats.json"))
-    sets = [word for s in settings for word in ("--set", s)]
-    last, whole, frame_ms, rays, bias = [], [], [], [], []
-    for restart in range(args.restarts):
-        common = sets + ["--frames", str(args.frames), "--seed", str(args.seed + 7919 * restart)]
-        weir.render(graph, *common, "--out", "radiance=" + picture, "--stats", stats)
-        weir.render(graph, *common, "--average", str(args.frames), "--out", "radiance=" + mean)
-        with open(stats) as file:
-            figures = json.load(file)
-        error, of_mean = weir.compare(picture, reference), weir.compare(mean, reference)
-        last.append(error[args.metric])
-        whole.append(of_mean[args.metric])
-        bias.append(of_mean["relative_bias"])
-        frame_ms.append(figures["frame"]["gpu_ms"]["median"])
-        rays.append(figures["rays"])
-    row = {"settings": settings, "device": figures["device"], "frame_ms": sorted(frame_ms)[len(frame_ms) // 2],
-           "passes_ms": {p["name"]: p["gpu_ms"]["median"] for p in figures["passes"]}, "rays": rays[-1]}
-    for name, values in (("one_frame", last), ("mean", whole), ("relative_bias", bias)):
+def errors(weir, graph, settings, args, reference, folder, restart):
+    """Of one restart: the comparison of its last frame with the reference, and that of the mean of its frames."""
+    picture, mean = (os.path.join(folder, name) for name in ("picture.exr", "mean.exr"))
+    common = words_of(settings) + ["--frames", str(args.frames), "--seed", str(args.seed + 7919 * restart)]
+    weir.render(graph, *common, "--out", "radiance=" + picture)
+    weir.render(graph, *common, "--average", str(args.frames), "--out", "radiance=" + mean)
+    result = weir.compare(picture, reference), weir.compare(mean, reference)
+    os.remove(picture)
+    os.remove(mean)
+    return result
+
+
+def times(weir, graph, settings, args, folder):
+    """What --stats says of frames that nothing else runs beside."""
+    stats = os.path.join(folder, "stats.json")
+    weir.render(graph, *words_of(settings), "--frames", str(args.timed_frames), "--seed", str(args.seed), "--out",
+                "radiance=" + os.path.join(folder, "timed.exr"), "--stats", stats)
+    with open(stats) as file:
+        return json.load(file)
+
+
+def words_of(settings):
+    return [word for s in settings for word in ("--set", s)]
+
+
+def row_of(settings, restarts, figures, args):
+    """One combination: the times of a frame and the errors over restarts."""
+    row = {"settings": settings, "device": figures["device"], "frame_ms": figures["frame"]["gpu_ms"]["median"],
+           "frame_p95_ms": figures["frame"]["gpu_ms"]["p95"],
+           "passes_ms": {p["name"]: p["gpu_ms"]["median"] for p in figures["passes"]}, "rays": figures["rays"]}
+    for name, values in (("one_frame", [last[args.metric] for last, _ in restarts]), ("mean", [mean[args.metric] for _, mean in restarts]),
+                         ("relative_bias", [mean["relative_bias"] for _, mean in restarts])):
         row[name], row[name + "_error"] = mean_and_error(values)
     row["one_frame_at_equal_time"] = row["one_frame"] * row["frame_ms"]
     row["mean_at_equal_time"] = row["mean"] * row["frame_ms"] * args.frames
@@ -113,6 +126,8 @@ def arguments():
     parser.add_argument("--size", default="1280x720")
     parser.add_argument("--frames", type=int, default=32)
     parser.add_argument("--restarts", type=int, default=4)
+    parser.add_argument("--timed-frames", type=int, default=64, help="of the render that gives the times")
+    parser.add_argument("--jobs", type=int, default=1, help="renders at once while errors are measured; times are measured alone")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--metric", default="relmse", choices=["relmse", "relmse_trimmed", "mse", "mape"])
     parser.add_argument("--mis", nargs="+", default=["biased", "z", "balance", "pairwise"], choices=["biased", "z", "balance", "pairwise"])
@@ -126,8 +141,8 @@ def arguments():
     parser.add_argument("--markdown")
     parser.add_argument("words", nargs="*", help="after --: for every weir render (--lights, --camera, --device, ...)")
     args = parser.parse_args()
-    if args.restarts < 1 or args.frames < 1:
-        parser.error("--restarts and --frames must be at least 1")
+    if min(args.restarts, args.frames, args.timed_frames, args.jobs) < 1:
+        parser.error("--restarts, --frames, --timed-frames and --jobs must be at least 1")
     return args
 
 
@@ -142,16 +157,24 @@ def main():
             sets = [word for s in args.set if s.startswith("gbuffer.") for word in ("--set", s)]
             weir.render(args.reference_graph, *sets, "--frames", count, "--average", count, "--seed", str(args.seed + 1), "--out",
                         "radiance=" + reference)
-        rows = []
+        combinations = []
         for mis, rays, visibility, bsdf_rays in itertools.product(args.mis, args.rays, args.visibility, args.bsdf_rays):
             is_unbiased = unbiased(mis, rays, visibility, bsdf_rays)
-            if args.unbiased and not is_unbiased:
-                continue
-            row = measure(weir, args.graph, args.set + settings_of(mis, rays, visibility, bsdf_rays, args.passes), args, reference, work)
-            row.update({"mis": mis, "visibilityRays": rays, "visibility": visibility, "bsdfRays": bsdf_rays, "unbiased": is_unbiased})
+            if is_unbiased or not args.unbiased:
+                combinations.append((args.set + settings_of(mis, rays, visibility, bsdf_rays, args.passes),
+                                     {"mis": mis, "visibilityRays": rays, "visibility": visibility, "bsdfRays": bsdf_rays, "unbiased": is_unbiased}))
+        with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+            runs = [[pool.submit(errors, weir, args.graph, settings, args, reference, tempfile.mkdtemp(dir=work), r) for r in range(args.restarts)]
+                    for settings, _ in combinations]
+            restarts = [[run.result() for run in of_one] for of_one in runs]
+        rows = []
+        for (settings, names), of_one in zip(combinations, restarts):
+            row = row_of(settings, of_one, times(weir, args.graph, settings, args, work), args)
+            row.update(names)
             rows.append(row)
             print("%-8s rays %-3s visibility %-3s bsdfRays %d: %.3f ms, %s %.4g, of the mean %.4g" %
-                  (mis, rays, visibility, bsdf_rays, row["frame_ms"], args.metric, row["one_frame"], row["mean"]), file=sys.stderr, flush=True)
+                  (row["mis"], row["visibilityRays"], row["visibility"], row["bsdfRays"], row["frame_ms"], args.metric, row["one_frame"], row["mean"]),
+                  file=sys.stderr, flush=True)
     text = table(rows, args.metric)
     print(text, end="")
     if args.markdown:

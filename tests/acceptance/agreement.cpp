@@ -135,8 +135,9 @@ int run(const Words& words) {
                              {"interval", {v.low, v.high}},
                              {"detectable", v.fine.resolution},
                              {"passed", v.answer != image::Answer::Biased}});
+    // After each setting: what was found stays if somebody stops a long run.
+    if (!words.json.empty()) render::writeTextFile(words.json, j.dump(2) + "\n");
   }
-  if (!words.json.empty()) render::writeTextFile(words.json, j.dump(2) + "\n");
   return passed ? 0 : 3;
 }
 
@@ -147,6 +148,7 @@ int main(int argc, char** argv) {
   CLI::App app("Do the unbiased settings of restir_di agree with reference.AllLights?");
   app.add_option("--scene", words.stage.scene)->required();
   app.add_option("--lights", words.stage.lights);
+  app.add_flag("--replace-lights", words.stage.replaceLights, "With --lights: the scene's own go");
   app.add_option("--environment", words.stage.environment);
   app.add_option("--camera", words.stage.camera);
   app.add_flag("--animate", words.stage.animate, "Compare the last frame of a scene that a clip moves");
