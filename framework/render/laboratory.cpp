@@ -66,7 +66,7 @@ void Restarts::take(std::span<const image::Picture> lanes) {
   delivered_ = 0;
   std::vector<image::Picture> wholes(lanes.size());
   parallelFor(lanes.size(), [&](size_t lane) { wholes[lane] = std::exchange(means_[lane], {}).mean(); });
-  for (const image::Picture& whole : wholes) (*sink_)(whole);
+  (*sink_)(wholes);
 }
 
 void Restarts::run(uint32_t count, const Sink& sink) {

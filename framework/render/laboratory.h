@@ -70,7 +70,8 @@ class Restarts {
   Restarts(Laboratory& laboratory, graph::CompiledGraph graph, const RestartOptions& options);
   Restarts(const Restarts&) = delete;
   Restarts& operator=(const Restarts&) = delete;
-  using Sink = std::function<void(const image::Picture&)>;
+  /// Is given the pictures of restarts that ran at a time, in order.
+  using Sink = std::function<void(std::span<const image::Picture>)>;
   /// So many more, in order, each with a seed of its own and cleared history.
   void run(uint32_t count, const Sink& sink);
   uint32_t done() const { return done_; }

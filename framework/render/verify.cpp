@@ -240,8 +240,8 @@ Verification verify(const VerifyOptions& o) {
     const Clock::time_point start = Clock::now();
     const uint32_t first = from.done();
     if (until <= first) return;
-    from.run(until - first, [&](const image::Picture& picture) {
-      into.add(picture);
+    from.run(until - first, [&](std::span<const image::Picture> pictures) {
+      into.add(pictures);
       if (o.progress) o.progress(what, into.restarts(), until);
     });
     seconds = secondsSince(start) / (until - first);

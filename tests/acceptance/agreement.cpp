@@ -39,7 +39,7 @@ image::EvidenceCollector collect(const Words& words, render::Laboratory& laborat
                          .lastOnly = moves,
                          .lanes = render::parseLanes(words.lanes)});
   image::EvidenceCollector result(words.tile, 4 * words.tile);
-  runs.run(restarts, [&](const image::Picture& picture) { result.add(picture); });
+  runs.run(restarts, [&](std::span<const image::Picture> pictures) { result.add(pictures); });
   return result;
 }
 

@@ -176,8 +176,8 @@ TEST_F(Verify, VerdictsAreTheSameInAnyNumberOfLanes) {
   const std::string more = rendered() + "--restarts 20 --tolerance 0.05 --json " + file("v.json") + " --lanes ";
   std::vector<Json> all;
   for (const char* lanes : {"1", "6"}) {
-    const Ran r = verify(restir, more + lanes, 2);
-    ASSERT_TRUE(r.status == 0 || r.status == 3) << r.err;
+    const Ran r = verify(restir, more + lanes, 2);  // whatever the verdict is
+    ASSERT_EQ(r.err, "");
     Json j = numbers();
     for (Json* part : {&j, &j.at("reference")}) {
       EXPECT_EQ(part->at("lanes").dump(), lanes);

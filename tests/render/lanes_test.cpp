@@ -32,7 +32,8 @@ class Lanes : public ::testing::Test {
     Pictures result;
     uint32_t wanted = 0;
     for (const uint32_t count : portions) {
-      restarts.run(count, [&](const image::Picture& picture) { result.push_back(picture); });
+      restarts.run(
+          count, [&](std::span<const image::Picture> some) { result.insert(result.end(), some.begin(), some.end()); });
       EXPECT_EQ(result.size(), wanted += count) << "all are there when run returns";
     }
     EXPECT_EQ(restarts.done(), wanted);
@@ -88,7 +89,9 @@ TEST_F(Lanes, OfRasterKernelsAreRestartsOneByOne) {
   std::vector<Pictures> all;
   for (const uint32_t lanes : {1u, 3u}) {
     render::Restarts restarts(laboratory_, laboratory_.compile(file, {}, 32, 32), {.lanes = lanes});
-    restarts.run(4, [&, &to = all.emplace_back()](const image::Picture& picture) { to.push_back(picture); });
+    restarts.run(4, [&to = all.emplace_back()](std::span<const image::Picture> some) {
+      to.insert(to.end(), some.begin(), some.end());
+    });
   }
   expectSame(all[0], all[1], "4 in 3 lanes");
 }
