@@ -127,6 +127,10 @@ void addVerifyCommand(CLI::App& app) {
   command->add_option("--first-frame", o.firstFrame, "Number of the first frame")->capture_default_str();
   command->add_option("--seed", o.seed, "Seed of the random numbers")->capture_default_str();
   command->add_option("--output", o.output, "Output of the graph that is looked at")->capture_default_str();
+  command
+      ->add_option("--lanes", o.lanes,
+                   "Restarts that run at a time: a number, or auto for what fills the device; verdicts stay the same")
+      ->capture_default_str();
   addOverrideOptions(*command, o.overrides);
   addReferenceOptions(*command, o);
   command->add_option("--tile", o.tile, "Side of the fine tiles in pixels; coarse ones have four times that")

@@ -10,6 +10,9 @@
 namespace weir {
 
 void parallelFor(size_t count, const std::function<void(size_t)>& work) {
+  // Asking how many cores there are takes longer than many a piece of work.
+  if (count == 1) return work(0);
+  static const size_t kCores = std::max(1u, std::thread::hardware_concurrency());
   std::atomic<size_t> next{0}, firstFailed{count};
   std::mutex mutex;
   std::exception_ptr error;
@@ -26,7 +29,7 @@ void parallelFor(size_t count, const std::function<void(size_t)>& work) {
       }
     }
   };
-  const size_t threads = std::min<size_t>(std::max(1u, std::thread::hardware_concurrency()), count);
+  const size_t threads = std::min(kCores, count);
   {
     std::vector<std::jthread> pool;
     for (size_t i = 1; i < threads; ++i) pool.emplace_back(run);

@@ -185,19 +185,17 @@ void Recording::barrier(VkPipelineStageFlags2 before, VkAccessFlags2 beforeAcces
   gpu::memoryBarrier(cursor_.commands, before, beforeAccess, after, afterAccess);
 }
 
-void Recording::bind(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint32_t h, uint32_t index) {
-  // Launches of one pass see what the ones before them wrote.
+/// What all lanes of a launch share.
+void Recording::begin(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint32_t h, uint32_t index) {
+  // Launches of one pass see what the ones before them wrote. Between the lanes of one launch there is nothing to wait
+  // for, so that they run at the same time.
   if (!first_) {
     const VkPipelineStageFlags2 stages = vulkanStages(runtime_.stages_);
     barrier(stages, writeAccess(runtime_.stages_), stages,
             readAccess(runtime_.stages_) | writeAccess(runtime_.stages_));
   }
   first_ = false;
-  const VkPipelineBindPoint point = kernel.pipeline->bindPoint();
-  vkCmdBindPipeline(cursor_.commands, point, kernel.pipeline->handle());
-  const std::array sets = {cursor_.sceneSet, kernel.sets[(runtime_.bySlot_ ? 2 * cursor_.slot : 0) + cursor_.parity]};
-  vkCmdBindDescriptorSets(cursor_.commands, point, runtime_.pipelineLayout_, 0, static_cast<uint32_t>(sets.size()),
-                          sets.data(), 1, &cursor_.frameOffset);
+  vkCmdBindPipeline(cursor_.commands, kernel.pipeline->bindPoint(), kernel.pipeline->handle());
   std::vector<uint32_t>& push = runtime_.push_;
   push[0] = w;
   push[1] = h;
@@ -206,10 +204,21 @@ void Recording::bind(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint
                      static_cast<uint32_t>(push.size() * 4), push.data());
 }
 
+void Recording::bindLane(const PassRuntime::PreparedKernel& kernel, uint32_t lane) const {
+  const std::array sets = {cursor_.sceneSet,
+                           kernel.sets[2 * (runtime_.bySlot_ ? cursor_.slot : lane) + cursor_.parity]};
+  const uint32_t offset = cursor_.frameOffset + lane * SceneFrame::kLaneStride;
+  vkCmdBindDescriptorSets(cursor_.commands, kernel.pipeline->bindPoint(), runtime_.pipelineLayout_, 0,
+                          static_cast<uint32_t>(sets.size()), sets.data(), 1, &offset);
+}
+
 void Recording::launch(Kernel kernel, uint32_t launchWidth, uint32_t launchHeight, uint32_t index) {
   const PassRuntime::PreparedKernel& prepared = kernelOf(kernel);
-  bind(prepared, launchWidth, launchHeight, index);
-  prepared.pipeline->launch(cursor_.commands, launchWidth, launchHeight);
+  begin(prepared, launchWidth, launchHeight, index);
+  for (uint32_t lane = 0; lane < cursor_.lanes; ++lane) {
+    bindLane(prepared, lane);
+    prepared.pipeline->launch(cursor_.commands, launchWidth, launchHeight);
+  }
 }
 
 void Recording::draw(Kernel kernel) {
@@ -217,10 +226,17 @@ void Recording::draw(Kernel kernel) {
   if (prepared.target == graph::kNone)
     throw InputError(fmt::format("{} ({}) draws with a kernel that is no rasterKernel", runtime_.compiled().name,
                                  runtime_.compiled().type));
-  const gpu::Image& target = runtime_.resources_->at(prepared.target, 0, false).image;
-  const gpu::Image& depthBuffer = runtime_.resources_->at(prepared.depth, 0, false).image;
+  const gpu::ImageDesc& target = runtime_.lanes_[0]->at(prepared.target, 0, false).image.desc();
+  begin(prepared, target.width, target.height, 0);
+  for (uint32_t lane = 0; lane < cursor_.lanes; ++lane) drawLane(prepared, lane);
+}
+
+void Recording::drawLane(const PassRuntime::PreparedKernel& kernel, uint32_t lane) const {
+  const Resources& resources = *runtime_.lanes_[lane];
+  const gpu::Image& target = resources.at(kernel.target, 0, false).image;
+  const gpu::Image& depthBuffer = resources.at(kernel.depth, 0, false).image;
   const VkExtent2D extent{target.desc().width, target.desc().height};
-  bind(prepared, extent.width, extent.height, 0);
+  bindLane(kernel, lane);
   VkRenderingAttachmentInfo color{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
   color.imageView = target.view();
   color.imageLayout = VK_IMAGE_LAYOUT_GENERAL;

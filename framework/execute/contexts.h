@@ -49,7 +49,9 @@ class Recording final : public Answers<RecordContext> {
 
  private:
   const PassRuntime::PreparedKernel& kernelOf(Kernel kernel) const;
-  void bind(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint32_t h, uint32_t index);
+  void begin(const PassRuntime::PreparedKernel& kernel, uint32_t w, uint32_t h, uint32_t index);
+  void bindLane(const PassRuntime::PreparedKernel& kernel, uint32_t lane) const;
+  void drawLane(const PassRuntime::PreparedKernel& kernel, uint32_t lane) const;
   void barrier(VkPipelineStageFlags2 before, VkAccessFlags2 beforeAccess, VkPipelineStageFlags2 after,
                VkAccessFlags2 afterAccess);
   const FrameCursor& cursor_;

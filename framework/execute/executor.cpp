@@ -15,7 +15,7 @@ Executor::Executor(const gpu::Device& device, shader::Compiler& compiler, Regist
     : device_(device),
       options_(options),
       services_{&device, &compiler, &registry, &pipelines_, &shaderFiles_},
-      scene_(device, compiler, scene),
+      scene_(device, compiler, scene, options.lanes),
       source_(std::move(graph)) {
   runtime_ = std::make_unique<GraphRuntime>(services_, scene_, source_, options_);
   try {
@@ -101,7 +101,7 @@ void Executor::restart(graph::CompiledGraph graph) {
   try {
     auto next = std::make_unique<GraphRuntime>(services_, scene_, graph, options_, runtime_.get());
     finish();  // frames in flight use what is about to go
-    captureTo({}, {});
+    captureLanesTo({}, {});
     const auto name = [](const graph::CompiledPass& pass) { return pass.name; };
     const bool samePasses = std::ranges::equal(next->graph().passes, runtime_->graph().passes, {}, name, name);
     if (!samePasses) makeTimers(next->graph().passes.size());  // times are by pass
@@ -153,8 +153,8 @@ void Executor::record(Slot& slot, uint32_t slotIndex, const FrameInput& input, b
   gpu::check(vkBeginCommandBuffer(slot.commands, &begin), "vkBeginCommandBuffer");
   const uint32_t parity = scene_.parity();
   runtime_->record(slot.commands, input, slotIndex, {slot.queries, slot.times.cpu});
-  slot.captured = capture && !captured_.empty();
-  if (slot.captured) recordCaptures(slot, parity);
+  slot.captured = capture && !captured_.empty() ? scene_.active() : 0;
+  if (slot.captured > 0) recordCaptures(slot, parity);
   if (options_.countRays)  // the host reads the count
     gpu::memoryBarrier(slot.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                        VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
@@ -199,16 +199,9 @@ std::vector<FrameTimes> Executor::takeTimes() {
   return result;
 }
 
-uint64_t Executor::transientBytes() const {
-  uint64_t sum = graph().sharedBytes();
-  for (const graph::Resource& r : graph().resources)
-    if (r.transient() && r.block == graph::kNone) sum += r.memoryBytes;
-  return sum;
-}
-
 uint64_t Executor::savedBytes() const {
   // Alignment can cost a little more than sharing saves.
-  const uint64_t separate = graph().separateBytes(), taken = transientBytes();
+  const uint64_t separate = scene_.lanes() * graph().separateBytes(), taken = transientBytes();
   return separate > taken ? separate - taken : 0;
 }
 

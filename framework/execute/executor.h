@@ -1,5 +1,6 @@
 // Runs a graph frame after frame: one submission a frame, two in flight, timestamps around every pass. The graph can be
-// swapped for another between two frames.
+// swapped for another between two frames. It can run in several lanes: the same frames with other seeds, each lane with
+// memory and history of its own, launch by launch side by side in one submission, so that small pictures fill a GPU.
 #pragma once
 
 #include <weir/execute/graph_runtime.h>
@@ -51,25 +52,32 @@ class Executor {
   /// The next frame starts without history, as the first one does.
   void resetHistory() { scene_.forget(); }
   /// Records and submits; returns before the GPU is done. Throws RuntimeError (device lost, …). With `capture` the
-  /// outputs named by captureTo() are brought to the host by the same submission.
+  /// outputs named by captureTo() are brought to the host by the same submission. Which lanes it has, `input.laneSeeds`
+  /// says. InputError for more lanes than there are, or for one that the last frame did not have, unless history starts
+  /// anew.
   void frame(const FrameInput& input, bool capture = false);
   /// Waits for everything submitted.
   void finish();
 
-  /// What becomes of captured pictures: called once for each output of each captured frame, in order, from within a
-  /// later frame() or finish(), when the frame is over. So nobody waits for a picture. Names as for read(). A swap that
-  /// changes anything but parameters ends it.
-  /// The sink must not call frame(), captureTo(), swap() or the like: InputError.
+  /// What becomes of captured pictures: called once for each output of each lane of each captured frame, in order, from
+  /// within a later frame() or finish(), when the frame is over. So nobody waits for a picture. Names as for read(). A
+  /// swap that changes anything but parameters ends it. The sink must not call frame(), captureTo(), swap() or the
+  /// like: InputError.
   using Sink = std::function<void(const std::string& output, const image::Picture&)>;
   void captureTo(const std::vector<std::string>& outputs, Sink sink);
-  /// A graph output of the last frame, after finish(); images only: buffers and unknown names throw InputError.
-  image::Picture read(const std::string& output);
+  /// The same, called with the pictures of all lanes of a frame at once.
+  using LaneSink = std::function<void(const std::string& output, std::span<const image::Picture>)>;
+  void captureLanesTo(const std::vector<std::string>& outputs, LaneSink sink);
+  /// A graph output of the last frame, after finish(); images only: buffers and unknown names throw InputError, and so
+  /// does a lane that the frame did not have.
+  image::Picture read(const std::string& output, uint32_t lane = 0);
   /// Meaning of an output port: how a PNG must encode it.
   Meaning meaning(const std::string& output) const;
   /// Raw bytes of a resource ("pass.port") as the last frame left it. InputError where somebody else uses the memory:
   /// compile the graph with `keep`.
-  std::vector<std::byte> readResource(const std::string& name);
-  /// For tests: what a resource holds before the next frame; of one that shares memory, until somebody else takes it.
+  std::vector<std::byte> readResource(const std::string& name, uint32_t lane = 0);
+  /// For tests: what a resource holds before the next frame, in the first lane; of one that shares memory, until
+  /// somebody else takes it.
   void writeResource(const std::string& name, std::span<const std::byte> bytes);
 
   /// Times of finished frames since the last call, oldest first; of the last kTimesKept at most.
@@ -77,8 +85,9 @@ class Executor {
   static constexpr size_t kTimesKept = 64;
   /// Rays of the last finished frame; 0 unless countRays.
   uint64_t rays() const { return rays_; }
-  uint64_t transientBytes() const;
-  uint64_t historyBytes() const { return graph().historyBytes(); }
+  /// Of all lanes, as the ones below.
+  uint64_t transientBytes() const { return scene_.lanes() * graph().transientBytes(); }
+  uint64_t historyBytes() const { return scene_.lanes() * graph().historyBytes(); }
   /// What transient resources would take more if they shared no memory.
   uint64_t savedBytes() const;
   uint64_t motionBytes() const { return scene_.motionBytes(); }
@@ -91,15 +100,15 @@ class Executor {
     VkFence fence = VK_NULL_HANDLE;
     VkQueryPool queries = VK_NULL_HANDLE;
     bool busy = false;
-    std::vector<gpu::Buffer> captures;  ///< by captured output
-    bool captured = false;
+    std::vector<gpu::Buffer> captures;  ///< by captured output and lane
+    uint32_t captured = 0;              ///< lanes that captures are of
     FrameTimes times;
   };
   struct Captured {
     std::string output;
     uint32_t resource = graph::kNone;
     bool previous = false;
-    image::Picture picture;  ///< filled anew for each frame
+    std::vector<image::Picture> pictures;  ///< by lane, filled anew for each frame
   };
 
   void makeSlots();
@@ -107,6 +116,7 @@ class Executor {
   void makeTimers(size_t passes);
   void collect(Slot& slot);
   void record(Slot& slot, uint32_t slotIndex, const FrameInput& input, bool capture);
+  const Storage& lastStorage(uint32_t resource, bool previous, uint32_t lane) const;
   const graph::GraphOutput& outputImage(const std::string& output) const;
   void recordCaptures(const Slot& slot, uint32_t parity) const;
   void deliver(Slot& slot);
@@ -124,7 +134,7 @@ class Executor {
   std::unique_ptr<GraphRuntime> runtime_;
   std::array<Slot, kSlots> slots_;
   std::vector<Captured> captured_;
-  Sink sink_;
+  LaneSink sink_;
   bool delivering_ = false;
   std::vector<uint64_t> ticks_;
   std::vector<FrameTimes> times_;  ///< a ring, allocated once

@@ -64,9 +64,13 @@ GraphRuntime::GraphRuntime(const Services& services, SceneFrame& scene, graph::C
   // Only now is it known what scratch memory there is and which stages passes run in.
   planMemory(graph_, deviceNeeds(device_, graph_), share_, largestAllocation(device_));
   planBarriers(graph_);
-  resources_ = std::make_unique<Resources>(device_, graph_, before ? before->resources_.get() : nullptr);
   for (const graph::Resource& r : graph_.resources) external_ |= r.external;
-  for (const auto& pass : passes_) pass->bind(*resources_, external_);
+  if (external_ && scene_.lanes() > 1)
+    throw InputError(fmt::format("graph '{}' takes resources from its host: there is one lane of it, not {}",
+                                 graph_.name, scene_.lanes()));
+  for (uint32_t lane = 0; lane < scene_.lanes(); ++lane)
+    lanes_.push_back(std::make_unique<Resources>(device_, graph_, before ? before->lanes_[lane].get() : nullptr));
+  for (const auto& pass : passes_) pass->bind(lanes_, external_);
   makeBarriers();
 }
 
@@ -109,8 +113,8 @@ void GraphRuntime::setExternal(const std::string& name, uint32_t slot, Storage s
     if (resource.name != name) continue;
     if (static_cast<bool>(storage.image) != resource.isImage())
       throw InputError(fmt::format("'{}' is {}", name, describe(resource.type)));
-    resources_->setExternal(r, slot, std::move(storage));
-    for (const auto& pass : passes_) pass->rebind(*resources_, slot, r);
+    lanes_[0]->setExternal(r, slot, std::move(storage));
+    for (const auto& pass : passes_) pass->rebind(slot, r);
     return;
   }
   const std::string nearest = nearestName(name, names);
@@ -130,7 +134,7 @@ bool GraphRuntime::needsExternal(uint32_t resource) const {
 
 void GraphRuntime::checkExternals(uint32_t slot) const {
   for (uint32_t r = 0; r < graph_.resources.size(); ++r)
-    if (needsExternal(r) && !resources_->external(r, slot))
+    if (needsExternal(r) && !lanes_[0]->external(r, slot))
       throw InputError(fmt::format("graph '{}' is recorded without the host's resource '{}' for slot {}", graph_.name,
                                    graph_.resources[r].name, slot));
 }
@@ -146,16 +150,16 @@ void GraphRuntime::makeBarriers() {
       b.dstStageMask = vulkanStages(w.to);
       b.dstAccessMask = (w.toReads ? readAccess(w.to) : 0) | (w.toWrites ? writeAccess(w.to) : 0);
     }
-    for (const graph::ImageStart& s : pass.starts) {
-      VkImageMemoryBarrier2& b =
-          barriers_[p].images.emplace_back(toGeneral(resources_->at(s.resource, 0, false).image));
-      b.srcStageMask = vulkanStages(s.from);
-      // What this image itself was written with in the last frame is made available before its content is dropped. What
-      // others wrote into the memory, the waits make available.
-      b.srcAccessMask = readAccess(s.from) | writeAccess(s.from);
-      b.dstStageMask = vulkanStages(pass.stages);
-      b.dstAccessMask = readAccess(pass.stages) | writeAccess(pass.stages);
-    }
+    for (const auto& lane : lanes_)
+      for (const graph::ImageStart& s : pass.starts) {
+        VkImageMemoryBarrier2& b = barriers_[p].images.emplace_back(toGeneral(lane->at(s.resource, 0, false).image));
+        b.srcStageMask = vulkanStages(s.from);
+        // What this image itself was written with in the last frame is made available before its content is dropped.
+        // What others wrote into the memory, the waits make available.
+        b.srcAccessMask = readAccess(s.from) | writeAccess(s.from);
+        b.dstStageMask = vulkanStages(pass.stages);
+        b.dstAccessMask = readAccess(pass.stages) | writeAccess(pass.stages);
+      }
   }
 }
 
@@ -165,15 +169,20 @@ void GraphRuntime::beforePass(VkCommandBuffer commands, size_t pass) const {
   VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
   info.memoryBarrierCount = static_cast<uint32_t>(b.memory.size());
   info.pMemoryBarriers = b.memory.data();
-  info.imageMemoryBarrierCount = static_cast<uint32_t>(b.images.size());
+  info.imageMemoryBarrierCount = static_cast<uint32_t>(b.images.size() / lanes_.size() * scene_.active());
   info.pImageMemoryBarriers = b.images.data();
   vkCmdPipelineBarrier2(commands, &info);
+}
+
+bool GraphRuntime::hasFreshHistory() const {
+  return std::any_of(lanes_.begin(), lanes_.begin() + scene_.active(),
+                     [](const auto& lane) { return lane->hasFresh(); });
 }
 
 void GraphRuntime::clearHistory(VkCommandBuffer commands) {
   const VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
   gpu::memoryBarrier(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any, VK_PIPELINE_STAGE_2_TRANSFER_BIT, any);
-  resources_->clearHistory(commands, scene_.fresh());
+  for (uint32_t lane = 0; lane < scene_.active(); ++lane) lanes_[lane]->clearHistory(commands, scene_.fresh());
   gpu::memoryBarrier(commands, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, any);
 }
@@ -185,7 +194,7 @@ void GraphRuntime::poisonAround(VkCommandBuffer commands, uint32_t pass, bool be
     const graph::Resource& r = graph_.resources[i];
     const bool looked = r.graphOutput || r.kept;
     if (!r.transient() || (before ? r.firstUse != pass : r.lastUse != pass || looked)) continue;
-    execute::poison(commands, resources_->at(i, 0, false), r);
+    for (uint32_t lane = 0; lane < scene_.active(); ++lane) execute::poison(commands, lanes_[lane]->at(i, 0, false), r);
   }
   gpu::fullBarrier(commands);
 }
@@ -204,8 +213,9 @@ void GraphRuntime::record(VkCommandBuffer commands, const FrameInput& input, uin
   scene_.begin(commands, input, slot, graph_.width, graph_.height);
   // What the graph before this one left behind was made visible by its barriers, not by this one's.
   if (!recorded_) gpu::fullBarrier(commands);
-  if (scene_.fresh() || resources_->hasFresh()) clearHistory(commands);
-  const FrameCursor cursor{commands, scene_.set(), SceneFrame::constantsOffset(slot), slot, scene_.parity()};
+  if (scene_.fresh() || hasFreshHistory()) clearHistory(commands);
+  const FrameCursor cursor{commands, scene_.set(),    scene_.constantsOffset(slot),
+                           slot,     scene_.parity(), scene_.active()};
   stamp(1);
   for (uint32_t p = 0; p < passes_.size(); ++p) {
     const Clock::time_point start = Clock::now();
@@ -221,7 +231,7 @@ void GraphRuntime::record(VkCommandBuffer commands, const FrameInput& input, uin
   device_.endLabel(commands);
   // Only now: a frame whose recording threw never was.
   scene_.end();
-  resources_->setCleared();
+  for (uint32_t lane = 0; lane < scene_.active(); ++lane) lanes_[lane]->setCleared();
   recorded_ = true;
 }
 

@@ -18,6 +18,9 @@ struct ExecutorOptions {
   std::string sceneFolder;  ///< what passes resolve relative files against
   bool shareMemory = true;  ///< transient resources that live at different times share memory
   bool poison = false;      ///< for tests: what is dead, or not yet written, is overwritten with rubbish
+  /// Runs of the graph at a time, 1 … SceneFrame::kMostLanes, each with memory of its own. Where there is a SceneFrame
+  /// already, it has said so.
+  uint32_t lanes = 1;
 };
 
 /// Where the times of a frame go; all of it may be left out.
@@ -29,8 +32,10 @@ struct Stamps {
 
 class GraphRuntime {
  public:
-  /// Compiles every shader and allocates everything. `services` and `scene` must outlive this. What is the same in
-  /// `before` (history, pipelines) is taken over; `before` stays usable until then, so that a failure costs nothing.
+  /// Compiles every shader and allocates everything, memory once for each of the scene's lanes. `services` and `scene`
+  /// must outlive this. What is the same in `before` (history, pipelines) is taken over; `before` stays usable until
+  /// then, so that a failure costs nothing. InputError when a graph that takes resources from its host is to have
+  /// several lanes.
   GraphRuntime(const Services& services, SceneFrame& scene, graph::CompiledGraph graph, const ExecutorOptions& options,
                const GraphRuntime* before = nullptr);
   ~GraphRuntime();
@@ -39,7 +44,7 @@ class GraphRuntime {
 
   /// With scratch memory, places and barriers as they are on this device.
   const graph::CompiledGraph& graph() const { return graph_; }
-  const Resources& resources() const { return *resources_; }
+  const Resources& resources(uint32_t lane = 0) const { return *lanes_[lane]; }
 
   /// Takes over the parameters of a graph that differs in nothing else, and in none that shaders are compiled with or
   /// that a pass looked at when it prepared. False when it does: then a new runtime is needed.
@@ -63,10 +68,11 @@ class GraphRuntime {
  private:
   /// The barriers before a pass, ready to be recorded.
   struct Barriers {
-    std::vector<VkMemoryBarrier2> memory;
-    std::vector<VkImageMemoryBarrier2> images;
+    std::vector<VkMemoryBarrier2> memory;       ///< of all lanes at once
+    std::vector<VkImageMemoryBarrier2> images;  ///< lane after lane, as many of each
   };
   void makeBarriers();
+  bool hasFreshHistory() const;
   bool needsExternal(uint32_t resource) const;
   void clearHistory(VkCommandBuffer commands);
   void beforePass(VkCommandBuffer commands, size_t pass) const;
@@ -76,7 +82,7 @@ class GraphRuntime {
   SceneFrame& scene_;
   graph::CompiledGraph graph_;
   Shared shared_;
-  std::unique_ptr<Resources> resources_;
+  std::vector<std::unique_ptr<Resources>> lanes_;
   std::vector<std::unique_ptr<PassRuntime>> passes_;
   std::vector<Barriers> barriers_;  ///< by pass
   bool share_, poison_, external_ = false, recorded_ = false;

@@ -101,6 +101,7 @@ void PassRuntime::makeSets(PreparedKernel& kernel, uint32_t count) {
   allocate.descriptorPool = pool;
   allocate.descriptorSetCount = count;
   allocate.pSetLayouts = layouts.data();
+  kernel.sets.resize(count);
   gpu::check(vkAllocateDescriptorSets(device().handle(), &allocate, kernel.sets.data()), "vkAllocateDescriptorSets");
 }
 
@@ -142,24 +143,27 @@ void PassRuntime::writeSet(const PreparedKernel& kernel, VkDescriptorSet set, co
   vkUpdateDescriptorSets(device().handle(), static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }
 
-void PassRuntime::writeSets(const PreparedKernel& kernel, const Resources& resources, uint32_t slot) const {
+void PassRuntime::writeSets(const PreparedKernel& kernel, uint32_t laneOrSlot) const {
+  const uint32_t lane = bySlot_ ? 0 : laneOrSlot, slot = bySlot_ ? laneOrSlot : 0;
   for (uint32_t parity = 0; parity < 2; ++parity)
-    writeSet(kernel, kernel.sets[(bySlot_ ? 2 * slot : 0) + parity], resources, slot, parity);
+    writeSet(kernel, kernel.sets[2 * laneOrSlot + parity], *lanes_[lane], slot, parity);
 }
 
-void PassRuntime::bind(const Resources& resources, bool bySlot) {
+void PassRuntime::bind(std::span<const std::unique_ptr<Resources>> lanes, bool bySlot) {
   bySlot_ = bySlot;
-  resources_ = &resources;
+  lanes_.clear();
+  for (const auto& lane : lanes) lanes_.push_back(lane.get());
+  const uint32_t count = bySlot ? SceneFrame::kSlots : static_cast<uint32_t>(lanes.size());
   for (PreparedKernel& kernel : kernels_) {
-    makeSets(kernel, bySlot ? 2 * SceneFrame::kSlots : 2);
-    for (uint32_t slot = 0; slot < (bySlot ? SceneFrame::kSlots : 1); ++slot) writeSets(kernel, resources, slot);
+    makeSets(kernel, 2 * count);
+    for (uint32_t i = 0; i < count; ++i) writeSets(kernel, i);
   }
 }
 
-void PassRuntime::rebind(const Resources& resources, uint32_t slot, uint32_t resource) {
+void PassRuntime::rebind(uint32_t slot, uint32_t resource) {
   for (const PreparedKernel& kernel : kernels_)
     if (std::ranges::any_of(kernel.slots, [&](const Slot& s) { return s.resource == resource; }))
-      writeSets(kernel, resources, slot);
+      writeSets(kernel, slot);
 }
 
 }  // namespace weir::execute

@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,9 @@ struct Shared {
 struct FrameCursor {
   VkCommandBuffer commands = VK_NULL_HANDLE;
   VkDescriptorSet sceneSet = VK_NULL_HANDLE;
-  uint32_t frameOffset = 0;  ///< dynamic offset of the frame constants
+  uint32_t frameOffset = 0;  ///< dynamic offset of the first lane's frame constants
   uint32_t slot = 0, parity = 0;
+  uint32_t lanes = 1;  ///< that the frame has: each launch is one of each of them
 };
 
 class PassRuntime {
@@ -59,11 +61,12 @@ class PassRuntime {
   /// Runs the pass's prepare(), which adds scratch resources to the graph. Throws what that throws, with the pass's
   /// name in front.
   void prepare();
-  /// Binds the graph's resources to the kernels. With `bySlot` each frame in flight has bindings of its own, as the
-  /// host's resources may change from one to the next; what is not there yet is left unbound.
-  void bind(const Resources& resources, bool bySlot);
+  /// Binds the graph's resources, of each lane, to the kernels. With `bySlot` (one lane) each frame in flight has
+  /// bindings of its own, as the host's resources may change from one to the next; what is not there yet is left
+  /// unbound.
+  void bind(std::span<const std::unique_ptr<Resources>> lanes, bool bySlot);
   /// The same for one slot, which no frame in flight uses, after one of the graph's resources was exchanged.
-  void rebind(const Resources& resources, uint32_t slot, uint32_t resource);
+  void rebind(uint32_t slot, uint32_t resource);
   void record(const FrameCursor& cursor);
 
   graph::Stages stages() const { return stages_; }  ///< of all its kernels
@@ -84,8 +87,8 @@ class PassRuntime {
   struct PreparedKernel {
     std::shared_ptr<Pipeline> pipeline;
     std::vector<Slot> slots;
-    std::array<VkDescriptorSet, 2ul * SceneFrame::kSlots> sets{};  ///< by parity, or by slot and parity
-    uint32_t target = graph::kNone, depth = graph::kNone;          ///< resources, of raster kernels
+    std::vector<VkDescriptorSet> sets;                     ///< by lane and parity, or by slot and parity
+    uint32_t target = graph::kNone, depth = graph::kNone;  ///< resources, of raster kernels
   };
   struct OwnTexture {
     gpu::Image image;
@@ -106,7 +109,7 @@ class PassRuntime {
   std::vector<Slot> slotsFor(const KernelOptions& options) const;
   Slot slotNamed(const std::string& name) const;
   void makeSets(PreparedKernel& kernel, uint32_t count);
-  void writeSets(const PreparedKernel& kernel, const Resources& resources, uint32_t slot) const;
+  void writeSets(const PreparedKernel& kernel, uint32_t laneOrSlot) const;
   void writeSet(const PreparedKernel& kernel, VkDescriptorSet set, const Resources& resources, uint32_t slot,
                 uint32_t parity) const;
   const HitShaders& hitShaders();
@@ -124,8 +127,8 @@ class PassRuntime {
   Specialization constants_;
   graph::Stages stages_ = 0;
   bool bySlot_ = false;
-  const Resources* resources_ = nullptr;  ///< once bound
-  std::set<std::string> asked_;           ///< parameters that prepare() looked at
+  std::vector<const Resources*> lanes_;  ///< once bound
+  std::set<std::string> asked_;          ///< parameters that prepare() looked at
 };
 
 }  // namespace weir::execute

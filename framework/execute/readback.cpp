@@ -1,6 +1,7 @@
 // Getting pictures and raw bytes out of an executor, and (for tests) bytes into it.
 #include <fmt/format.h>
 #include <weir/core/error.h>
+#include <weir/core/parallel.h>
 #include <weir/core/text.h>
 #include <weir/execute/executor.h>
 #include <weir/gpu/barrier.h>
@@ -9,6 +10,7 @@
 
 #include <array>
 #include <cstring>
+#include <functional>
 #include <span>
 #include <utility>
 
@@ -100,7 +102,13 @@ std::vector<std::byte> Executor::download(const Storage& storage) {
   return {staging.mapped(), staging.mapped() + uint64_t{desc.width} * desc.height * texel};
 }
 
-std::vector<std::byte> Executor::readResource(const std::string& name) {
+const Storage& Executor::lastStorage(uint32_t resource, bool previous, uint32_t lane) const {
+  if (lane >= scene_.active()) throw InputError(fmt::format("lane {}: the last frame has {}", lane, scene_.active()));
+  const uint32_t parity = static_cast<uint32_t>((scene_.frames() + 1) & 1u);  // of the last frame
+  return runtime_->resources(lane).at(resource, parity, previous);
+}
+
+std::vector<std::byte> Executor::readResource(const std::string& name, uint32_t lane) {
   finish();
   const uint32_t index = resourceNamed(name);
   const graph::Resource& r = graph().resources[index];
@@ -110,8 +118,7 @@ std::vector<std::byte> Executor::readResource(const std::string& name) {
     throw InputError(fmt::format("'{}' is not kept to the frame's end: other resources use its memory", name));
   if (r.transient() && r.shares && !runtime_->recorded())
     throw InputError(fmt::format("'{}' can't be read before graph '{}' has run", name, graph().name));
-  const uint32_t parity = static_cast<uint32_t>((scene_.frames() + 1) & 1u);  // of the last frame
-  return download(runtime_->resources().at(index, parity, false));
+  return download(lastStorage(index, false, lane));
 }
 
 void Executor::writeResource(const std::string& name, std::span<const std::byte> bytes) {
@@ -176,13 +183,12 @@ const graph::GraphOutput& Executor::outputImage(const std::string& output) const
   return *found;
 }
 
-image::Picture Executor::read(const std::string& output) {
+image::Picture Executor::read(const std::string& output, uint32_t lane) {
   const graph::GraphOutput& found = outputImage(output);
   if (!runtime_->recorded())
     throw InputError(fmt::format("output '{}' can't be read before graph '{}' has run", output, graph().name));
   finish();
-  const uint32_t parity = static_cast<uint32_t>((scene_.frames() + 1) & 1u);
-  const std::vector<std::byte> bytes = download(runtime_->resources().at(found.resource, parity, found.previous));
+  const std::vector<std::byte> bytes = download(lastStorage(found.resource, found.previous, lane));
   image::Picture picture;
   unpack(bytes, graph().resources[found.resource], picture);
   return picture;
@@ -193,6 +199,13 @@ void Executor::notFromSink(const char* what) const {
 }
 
 void Executor::captureTo(const std::vector<std::string>& outputs, Sink sink) {
+  if (!sink) return captureLanesTo(outputs, {});
+  captureLanesTo(outputs, [each = std::move(sink)](const std::string& output, std::span<const image::Picture> lanes) {
+    for (const image::Picture& picture : lanes) each(output, picture);
+  });
+}
+
+void Executor::captureLanesTo(const std::vector<std::string>& outputs, LaneSink sink) {
   notFromSink("captureTo");
   if (!outputs.empty() && !sink) throw InputError("captured pictures need somebody to receive them");
   finish();
@@ -201,10 +214,11 @@ void Executor::captureTo(const std::vector<std::string>& outputs, Sink sink) {
   std::array<std::vector<gpu::Buffer>, kSlots> buffers;
   for (const std::string& output : outputs) {
     const graph::GraphOutput& found = outputImage(output);
-    captured.push_back({output, found.resource, found.previous, {}});
+    captured.push_back({output, found.resource, found.previous, std::vector<image::Picture>(scene_.lanes())});
     for (std::vector<gpu::Buffer>& slot : buffers)
-      slot.emplace_back(device_, graph().resources[found.resource].bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                        gpu::Residency::Readback, "captured " + output);
+      for (uint32_t lane = 0; lane < scene_.lanes(); ++lane)
+        slot.emplace_back(device_, graph().resources[found.resource].bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                          gpu::Residency::Readback, "captured " + output);
   }
   captured_ = std::move(captured);
   sink_ = std::move(sink);
@@ -215,9 +229,13 @@ void Executor::recordCaptures(const Slot& slot, uint32_t parity) const {
   constexpr VkPipelineStageFlags2 kCopy = VK_PIPELINE_STAGE_2_COPY_BIT, kAll = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   gpu::memoryBarrier(slot.commands, kAll, VK_ACCESS_2_MEMORY_WRITE_BIT, kCopy, VK_ACCESS_2_TRANSFER_READ_BIT);
   for (size_t i = 0; i < captured_.size(); ++i) {
-    const gpu::Image& image = runtime_->resources().at(captured_[i].resource, parity, captured_[i].previous).image;
-    const VkBufferImageCopy copy = wholeImage(image);
-    vkCmdCopyImageToBuffer(slot.commands, image.handle(), VK_IMAGE_LAYOUT_GENERAL, slot.captures[i].handle(), 1, &copy);
+    for (uint32_t lane = 0; lane < slot.captured; ++lane) {
+      const gpu::Image& image =
+          runtime_->resources(lane).at(captured_[i].resource, parity, captured_[i].previous).image;
+      const VkBufferImageCopy copy = wholeImage(image);
+      vkCmdCopyImageToBuffer(slot.commands, image.handle(), VK_IMAGE_LAYOUT_GENERAL,
+                             slot.captures[i * scene_.lanes() + lane].handle(), 1, &copy);
+    }
   }
   // The host reads the copies; the next frame overwrites the images.
   gpu::memoryBarrier(slot.commands, kCopy, VK_ACCESS_2_TRANSFER_WRITE_BIT, kAll | VK_PIPELINE_STAGE_2_HOST_BIT,
@@ -226,7 +244,8 @@ void Executor::recordCaptures(const Slot& slot, uint32_t parity) const {
 
 /// Hands over what a frame that is over has captured.
 void Executor::deliver(Slot& slot) {
-  if (!std::exchange(slot.captured, false)) return;
+  const uint32_t lanes = std::exchange(slot.captured, 0);
+  if (lanes == 0) return;
   struct Delivering {
     bool& flag;
     explicit Delivering(bool& f) : flag(f) { flag = true; }
@@ -235,9 +254,13 @@ void Executor::deliver(Slot& slot) {
   const Delivering delivering(delivering_);
   for (size_t i = 0; i < captured_.size(); ++i) {
     const graph::Resource& resource = graph().resources[captured_[i].resource];
-    slot.captures[i].invalidate();
-    unpack(std::span(slot.captures[i].mapped(), resource.bytes), resource, captured_[i].picture);
-    sink_(captured_[i].output, captured_[i].picture);
+    const auto unpackLane = [&](size_t lane) {
+      const gpu::Buffer& buffer = slot.captures[i * scene_.lanes() + lane];
+      buffer.invalidate();
+      unpack(std::span(buffer.mapped(), resource.bytes), resource, captured_[i].pictures[lane]);
+    };
+    parallelFor(lanes, std::cref(unpackLane));
+    sink_(captured_[i].output, std::span(captured_[i].pictures).first(lanes));
   }
 }
 

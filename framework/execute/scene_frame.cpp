@@ -1,15 +1,14 @@
+#include <fmt/format.h>
+#include <weir/core/error.h>
 #include <weir/execute/scene_frame.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
 namespace weir::execute {
-namespace {
 
-constexpr uint32_t kConstantsStride = 256;  // the largest minUniformBufferOffsetAlignment that Vulkan allows
-static_assert(sizeof(FrameConstants) <= kConstantsStride);
-
-}  // namespace
+static_assert(sizeof(FrameConstants) <= SceneFrame::kLaneStride);
 
 GpuCamera toGpu(const scene::Camera& camera, uint32_t width, uint32_t height) {
   const float t = std::tan(camera.verticalFov * 0.5f);
@@ -20,13 +19,11 @@ GpuCamera toGpu(const scene::Camera& camera, uint32_t width, uint32_t height) {
           glm::vec4(up * t, 0)};
 }
 
-uint32_t SceneFrame::constantsOffset(uint32_t slot) {
-  return slot * kConstantsStride;
-}
-
-SceneFrame::SceneFrame(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene)
-    : scene_(scene) {
-  constants_ = gpu::Buffer(device, uint64_t{kSlots} * kConstantsStride, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+SceneFrame::SceneFrame(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene,
+                       uint32_t lanes)
+    : scene_(scene), lanes_(lanes), active_(lanes), activeBefore_(lanes) {
+  if (lanes == 0 || lanes > kMostLanes) throw InputError(fmt::format("{} lanes: must be 1 … {}", lanes, kMostLanes));
+  constants_ = gpu::Buffer(device, uint64_t{kSlots} * lanes * kLaneStride, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
                            gpu::Residency::Upload, "frame constants");
   rayCounter_ = gpu::Buffer(device, sizeof(uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Residency::Readback,
                             "ray counter");
@@ -49,12 +46,24 @@ SceneFrame::~SceneFrame() {
 void SceneFrame::begin(VkCommandBuffer commands, const FrameInput& input, uint32_t slot, uint32_t width,
                        uint32_t height) {
   if (input.cut) fresh_ = true;
+  activate(input);
   if (motion_) motion_->record(commands, slot, parity(), input.state, fresh_);
   writeConstants(input, slot, width, height);
 }
 
+void SceneFrame::activate(const FrameInput& input) {
+  const size_t wanted = std::max<size_t>(input.laneSeeds.size(), 1);
+  if (wanted > lanes_) throw InputError(fmt::format("a frame of {} lanes: there are {}", wanted, lanes_));
+  // What a lane that was left out has of the past is not the last frame's.
+  if (wanted > activeBefore_ && !fresh_)
+    throw InputError(
+        fmt::format("a frame of {} lanes after one of {}: only a cut brings lanes back", wanted, activeBefore_));
+  active_ = static_cast<uint32_t>(wanted);
+}
+
 void SceneFrame::end() {
   previousCamera_ = camera_;
+  activeBefore_ = active_;
   fresh_ = false;
   ++frames_;
 }
@@ -67,14 +76,16 @@ void SceneFrame::writeConstants(const FrameInput& input, uint32_t slot, uint32_t
   c.width = width;
   c.height = height;
   c.frame = input.index;
-  c.seed = input.seed;
   c.lights = scene_.lightCount;
   c.instances = scene_.instanceCount;
   c.sceneDiameter = motion_ ? motion_->diameter() : scene_.diameter;
   c.sceneLargest = motion_ ? motion_->largestSide() : scene_.largestSide;
   // Depth is near/z in 32-bit floats, so that a near plane this close costs no precision.
   c.sceneNear = c.sceneDiameter * 0x1p-20f;
-  std::memcpy(constants_.mapped() + constantsOffset(slot), &c, sizeof c);
+  for (uint32_t lane = 0; lane < active_; ++lane) {
+    c.seed = input.laneSeeds.empty() ? input.seed : input.laneSeeds[lane];
+    std::memcpy(constants_.mapped() + constantsOffset(slot) + uint64_t{lane} * kLaneStride, &c, sizeof c);
+  }
   constants_.flush();
 }
 

@@ -4,6 +4,7 @@
 #include <weir/gpu/vma.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <utility>
 
@@ -333,6 +334,20 @@ std::vector<std::byte> readBuffer(const Device& device, const Buffer& buffer) {
   });
   staging.invalidate();
   return {staging.mapped(), staging.mapped() + buffer.size()};
+}
+
+uint64_t freeDeviceBytes(const Device& device) {
+  const VkPhysicalDeviceMemoryProperties* memory = nullptr;
+  vmaGetMemoryProperties(device.allocator(), &memory);
+  std::array<VmaBudget, VK_MAX_MEMORY_HEAPS> budgets{};
+  vmaGetHeapBudgets(device.allocator(), budgets.data());
+  uint64_t most = 0;
+  for (uint32_t heap = 0; heap < memory->memoryHeapCount; ++heap) {
+    if ((memory->memoryHeaps[heap].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) == 0) continue;
+    const VmaBudget& b = budgets[heap];
+    if (b.budget > b.usage) most = std::max<uint64_t>(most, b.budget - b.usage);
+  }
+  return most;
 }
 
 void fullBarrier(VkCommandBuffer commands) {

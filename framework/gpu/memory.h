@@ -132,6 +132,10 @@ Image uploadImage(const Device& device, ImageDesc desc, std::span<const std::byt
 /// Copies a buffer's bytes back (needs TRANSFER_SRC); waits.
 std::vector<std::byte> readBuffer(const Device& device, const Buffer& buffer);
 
+/// Bytes of the device's own memory that allocations may still take, of the heap that has the most: an estimate, which
+/// knows nothing of other programs.
+uint64_t freeDeviceBytes(const Device& device);
+
 /// A memory barrier between everything before and everything after; for tests and loading.
 void fullBarrier(VkCommandBuffer commands);
 

@@ -120,10 +120,11 @@ struct CompiledGraph {
   std::vector<GraphOutput> outputs;
   std::vector<Skipped> skipped;
   std::vector<MemoryBlock> blocks;
-  uint64_t sharedBytes() const;    ///< of all blocks
-  uint64_t separateBytes() const;  ///< what the transient resources would take each on its own
-  uint64_t mostAlive() const;      ///< of those at once: no plan can take less
-  uint64_t historyBytes() const;   ///< both copies
+  uint64_t transientBytes() const;  ///< of resources that live within a frame, shared blocks and others
+  uint64_t sharedBytes() const;     ///< of all blocks
+  uint64_t separateBytes() const;   ///< what the transient resources would take each on its own
+  uint64_t mostAlive() const;       ///< of those at once: no plan can take less
+  uint64_t historyBytes() const;    ///< both copies
   const GraphOutput* findOutput(const std::string& outputName) const;
 };
 

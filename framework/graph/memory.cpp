@@ -119,6 +119,13 @@ uint64_t CompiledGraph::sharedBytes() const {
                          [](uint64_t sum, const MemoryBlock& block) { return sum + block.bytes; });
 }
 
+uint64_t CompiledGraph::transientBytes() const {
+  uint64_t sum = sharedBytes();
+  for (const Resource& r : resources)
+    if (r.transient() && r.block == kNone) sum += r.memoryBytes;
+  return sum;
+}
+
 uint64_t CompiledGraph::separateBytes() const {
   uint64_t sum = 0;
   for (const Resource& r : resources)

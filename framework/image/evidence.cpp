@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <weir/core/error.h>
+#include <weir/core/parallel.h>
 #include <weir/image/evidence.h>
 
 #include <algorithm>
@@ -39,18 +40,33 @@ struct Scales {
   Sums whole;
 };
 
-/// `term(pixel number)` gives a pixel's figures.
+/// Adds the pixels of the rows from `first` up to `end` to their tiles. `term(pixel number)` gives a pixel's figures.
 template <class Term>
-Scales sumScales(const TileGrid& fine, const TileGrid& coarse, const Term& term) {
-  Scales s{std::vector<Sums>(fine.count()), std::vector<Sums>(coarse.count()), {}};
-  for (uint32_t y = 0; y < fine.height; ++y) {
-    for (uint32_t x = 0; x < fine.width; ++x) {
-      s.fine[fine.index(x, y)].add({term(size_t{y} * fine.width + x), 1.0});
+void addRows(std::vector<Sums>& tiles, const TileGrid& grid, const Term& term, uint32_t first, uint32_t end) {
+  for (uint32_t y = first; y < end; ++y) {
+    for (uint32_t x = 0; x < grid.width; ++x) {
+      tiles[grid.index(x, y)].add({term(size_t{y} * grid.width + x), 1.0});
     }
   }
+}
+
+auto plainTerm(const Picture& picture) {
+  return [&picture](size_t i) { return std::array<Colour, 3>{colourAndLuminance(&picture.rgba[4 * i])}; };
+}
+
+/// From the sums of the fine tiles.
+Scales allScales(const TileGrid& fine, const TileGrid& coarse, std::vector<Sums> tiles) {
+  Scales s{std::move(tiles), std::vector<Sums>(coarse.count()), {}};
   for (size_t i = 0; i < s.fine.size(); ++i) s.coarse[coarse.index(fine.left(i), fine.top(i))].add(s.fine[i]);
   for (const Sums& tile : s.coarse) s.whole.add(tile);
   return s;
+}
+
+template <class Term>
+Scales sumScales(const TileGrid& fine, const TileGrid& coarse, const Term& term) {
+  std::vector<Sums> tiles(fine.count());
+  addRows(tiles, fine, term, 0, fine.height);
+  return allScales(fine, coarse, std::move(tiles));
 }
 
 /// Evidence whose every figure is `make(sums, colour)`.
@@ -113,24 +129,32 @@ EvidenceCollector::EvidenceCollector(uint32_t fineSide, uint32_t coarseSide) : p
   std::tie(fine_, coarse_) = grids({}, fineSide, coarseSide);
 }
 
-void EvidenceCollector::add(const Picture& picture) {
-  pixels_.add(picture);
-  if (pixels_.restarts() == 1) {
-    std::tie(fine_, coarse_) = grids(picture, fine_.side, coarse_.side);
+void EvidenceCollector::add(std::span<const Picture> pictures) {
+  if (pictures.empty()) return;
+  uint64_t restart = restarts();
+  pixels_.add(pictures);
+  if (restart == 0) {
+    std::tie(fine_, coarse_) = grids(pictures[0], fine_.side, coarse_.side);
     fineShapes_.resize(fine_.count());
     coarseShapes_.resize(coarse_.count());
   }
-  const NonFinite bad = findNonFinite(picture);
-  if (bad.pixels > 0 && nonFinite_.pixels == 0) nonFinite_ = {0, bad.x, bad.y, pixels_.restarts() - 1};
-  nonFinite_.pixels += bad.pixels;
-  const Scales s = sumScales(fine_, coarse_,
-                             [&](size_t i) { return std::array<Colour, 3>{colourAndLuminance(&picture.rgba[4 * i])}; });
-  const auto put = [&](Shapes& shapes, const Sums& sums) {
-    for (size_t c = 0; c < 4; ++c) shapes[c].add(sums.sum[0][c] / sums.pixels, pixels_.restarts());
-  };
-  for (size_t i = 0; i < s.fine.size(); ++i) put(fineShapes_[i], s.fine[i]);
-  for (size_t i = 0; i < s.coarse.size(); ++i) put(coarseShapes_[i], s.coarse[i]);
-  put(wholeShapes_, s.whole);
+  std::vector<std::vector<Sums>> tiles(pictures.size(), std::vector<Sums>(fine_.count()));
+  forBands(fine_, pictures.size(), [&](uint32_t first, uint32_t end) {
+    for (size_t k = 0; k < pictures.size(); ++k) addRows(tiles[k], fine_, plainTerm(pictures[k]), first, end);
+  });
+  std::vector<NonFinite> bad(pictures.size());
+  parallelFor(pictures.size(), [&](size_t k) { bad[k] = findNonFinite(pictures[k]); });
+  for (size_t k = 0; k < pictures.size(); ++k, ++restart) {
+    if (bad[k].pixels > 0 && nonFinite_.pixels == 0) nonFinite_ = {0, bad[k].x, bad[k].y, restart};
+    nonFinite_.pixels += bad[k].pixels;
+    const auto put = [&](Shapes& shapes, const Sums& sums) {
+      for (size_t c = 0; c < 4; ++c) shapes[c].add(sums.sum[0][c] / sums.pixels, restart + 1);
+    };
+    const Scales s = allScales(fine_, coarse_, std::move(tiles[k]));
+    for (size_t i = 0; i < s.fine.size(); ++i) put(fineShapes_[i], s.fine[i]);
+    for (size_t i = 0; i < s.coarse.size(); ++i) put(coarseShapes_[i], s.coarse[i]);
+    put(wholeShapes_, s.whole);
+  }
 }
 
 Evidence EvidenceCollector::evidence() const {
@@ -148,8 +172,7 @@ Evidence EvidenceCollector::evidence() const {
 
 Evidence exactEvidence(const Picture& picture, uint32_t fineSide, uint32_t coarseSide) {
   const auto [fine, coarse] = grids(picture, fineSide, coarseSide);
-  const Scales s = sumScales(fine, coarse,
-                             [&](size_t i) { return std::array<Colour, 3>{colourAndLuminance(&picture.rgba[4 * i])}; });
+  const Scales s = sumScales(fine, coarse, plainTerm(picture));
   return fromScales(fine, coarse, s, [](const Sums& t, size_t c) { return Estimate{t.sum[0][c] / t.pixels}; });
 }
 

@@ -62,7 +62,9 @@ class EvidenceCollector {
   /// Sides in pixels. Throws InputError unless coarse is a multiple of fine.
   EvidenceCollector(uint32_t fineSide, uint32_t coarseSide);
   /// Throws InputError if its size differs from the first one's.
-  void add(const Picture& picture);
+  void add(const Picture& picture) { add(std::span(&picture, 1)); }
+  /// Several, as if one after the other, on several cores. All or, when it throws, none.
+  void add(std::span<const Picture> pictures);
   uint64_t restarts() const { return pixels_.restarts(); }
   const NonFinite& nonFinite() const { return nonFinite_; }
   Picture mean() const { return pixels_.mean(); }

@@ -3,8 +3,10 @@
 #include <weir/image/statistics.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace weir::image {
 namespace {
@@ -29,35 +31,58 @@ struct TileFigures {
   Colour whole{};
 };
 
-/// `finish(sum, pixels)` of the sums of `term(pixel)`, per tile and whole.
-template <class Term, class Finish>
-TileFigures sumTiles(const TileGrid& grid, const Picture& picture, const Term& term, const Finish& finish) {
-  TileFigures result{std::vector<Colour>(grid.count()), {}};
-  std::vector<double> pixels(grid.count());
-  for (uint32_t y = 0; y < grid.height; ++y) {
+/// Sums over the pixels of each tile, and how many those are.
+struct TileSums {
+  std::vector<Colour> tiles;
+  std::vector<double> pixels;
+  explicit TileSums(const TileGrid& grid) : tiles(grid.count()), pixels(grid.count()) {}
+};
+
+/// Adds `term(pixel)` of the rows from `first` up to `end`.
+template <class Term>
+void addRows(TileSums& sums, const TileGrid& grid, const Picture& picture, const Term& term, uint32_t first,
+             uint32_t end) {
+  for (uint32_t y = first; y < end; ++y) {
     for (uint32_t x = 0; x < grid.width; ++x) {
       const size_t tile = grid.index(x, y);
       const Colour value = term(picture.at(x, y));
-      for (size_t c = 0; c < 4; ++c) result.tiles[tile][c] += value[c];
-      ++pixels[tile];
+      for (size_t c = 0; c < 4; ++c) sums.tiles[tile][c] += value[c];
+      ++sums.pixels[tile];
     }
   }
+}
+
+/// `finish(sum, pixels)`, per tile and whole.
+template <class Finish>
+TileFigures finishTiles(TileSums sums, const TileGrid& grid, const Finish& finish) {
+  TileFigures result{std::move(sums.tiles), {}};
   for (const Colour& tile : result.tiles) {
     for (size_t c = 0; c < 4; ++c) result.whole[c] += tile[c];
   }
   for (size_t c = 0; c < 4; ++c) {
-    for (size_t i = 0; i < grid.count(); ++i) result.tiles[i][c] = finish(result.tiles[i][c], pixels[i]);
+    for (size_t i = 0; i < grid.count(); ++i) result.tiles[i][c] = finish(result.tiles[i][c], sums.pixels[i]);
     result.whole[c] = finish(result.whole[c], double(grid.width) * grid.height);
   }
   return result;
+}
+
+template <class Term, class Finish>
+TileFigures sumTiles(const TileGrid& grid, const Picture& picture, const Term& term, const Finish& finish) {
+  TileSums sums(grid);
+  addRows(sums, grid, picture, term, 0, grid.height);
+  return finishTiles(std::move(sums), grid, finish);
 }
 
 Colour colourAndLuminance(const float* rgb) {
   return {rgb[0], rgb[1], rgb[2], luminance(rgb)};
 }
 
+double quotient(double sum, double pixels) {
+  return sum / pixels;
+}
+
 TileFigures tileMeans(const TileGrid& grid, const Picture& picture) {
-  return sumTiles(grid, picture, colourAndLuminance, [](double sum, double pixels) { return sum / pixels; });
+  return sumTiles(grid, picture, colourAndLuminance, quotient);
 }
 
 /// Standard errors of the reference's tile means from those of its pixels, taken as independent. The luminance of the
@@ -126,26 +151,42 @@ RestartAccumulator::RestartAccumulator(uint32_t tileSide) {
   tiles_.grid.side = tileSide;
 }
 
-void RestartAccumulator::add(const Picture& picture) {
+void RestartAccumulator::add(std::span<const Picture> pictures) {
+  if (pictures.empty()) return;
   TileStatistics& t = tiles_;
+  TileGrid grid = t.grid;
   if (t.restarts == 0) {
-    t.grid.width = picture.width;
-    t.grid.height = picture.height;
-    requireSameSize(t.grid, picture, "this restart");
-    t.tiles.assign(t.grid.count(), {});
-    pixels_.assign(picture.rgba.size(), {});
+    grid.width = pictures[0].width;
+    grid.height = pictures[0].height;
   }
-  requireSameSize(t.grid, picture, "this restart");
-  ++t.restarts;
-  for (size_t i = 0; i < pixels_.size(); ++i) pixels_[i].add(picture.rgba[i], t.restarts);
-  for (size_t i = 0; i < pixels_.size(); i += 4) {
-    const float* p = &picture.rgba[i];
-    nonFinite_ += !(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]));
+  for (const Picture& picture : pictures) requireSameSize(grid, picture, "this restart");
+  if (t.restarts == 0) {
+    t.grid = grid;
+    t.tiles.assign(grid.count(), {});
+    pixels_.assign(pictures[0].rgba.size(), {});
   }
-  const TileFigures means = tileMeans(t.grid, picture);
-  for (size_t c = 0; c < 4; ++c) {
-    for (size_t i = 0; i < t.tiles.size(); ++i) t.tiles[i][c].add(means.tiles[i][c], t.restarts);
-    t.whole[c].add(means.whole[c], t.restarts);
+  std::vector<TileSums> sums(pictures.size(), TileSums(grid));
+  std::atomic<uint64_t> nonFinite{0};
+  forBands(grid, pictures.size(), [&](uint32_t first, uint32_t end) {
+    const size_t from = size_t{4} * grid.width * first, to = size_t{4} * grid.width * end;
+    uint64_t bad = 0;
+    for (size_t k = 0; k < pictures.size(); ++k) {
+      const std::vector<float>& rgba = pictures[k].rgba;
+      for (size_t i = from; i < to; ++i) pixels_[i].add(rgba[i], t.restarts + k + 1);
+      for (size_t i = from; i < to; i += 4)
+        bad += !(std::isfinite(rgba[i]) && std::isfinite(rgba[i + 1]) && std::isfinite(rgba[i + 2]));
+      addRows(sums[k], grid, pictures[k], colourAndLuminance, first, end);
+    }
+    nonFinite += bad;
+  });
+  nonFinite_ += nonFinite;
+  for (TileSums& each : sums) {
+    const TileFigures means = finishTiles(std::move(each), grid, quotient);
+    ++t.restarts;
+    for (size_t c = 0; c < 4; ++c) {
+      for (size_t i = 0; i < t.tiles.size(); ++i) t.tiles[i][c].add(means.tiles[i][c], t.restarts);
+      t.whole[c].add(means.whole[c], t.restarts);
+    }
   }
 }
 

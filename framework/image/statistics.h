@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace weir::image {
@@ -45,7 +46,9 @@ class RestartAccumulator {
   explicit RestartAccumulator(uint32_t tileSide = 64);
 
   /// One independent restart. Throws InputError if its size differs from the first one's.
-  void add(const Picture& picture);
+  void add(const Picture& picture) { add(std::span(&picture, 1)); }
+  /// Several, as if one after the other, on several cores. All or, when it throws, none.
+  void add(std::span<const Picture> pictures);
   /// As if the other's restarts had been added here. Throws InputError for another size or tile side.
   void merge(const RestartAccumulator& other);
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 namespace weir::image {
 
@@ -24,5 +25,9 @@ struct TileGrid {
   uint32_t left(size_t tile) const { return static_cast<uint32_t>(tile % columns()) * side; }
   uint32_t top(size_t tile) const { return static_cast<uint32_t>(tile / columns()) * side; }
 };
+
+/// Calls work(first row, the row behind the last) for bands of whole rows of tiles that together are the picture: on
+/// several cores where so many pictures are enough to do. What is summed by pixel or by tile comes out the same.
+void forBands(const TileGrid& grid, size_t pictures, const std::function<void(uint32_t, uint32_t)>& work);
 
 }  // namespace weir::image

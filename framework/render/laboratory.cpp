@@ -1,11 +1,16 @@
 #include <fmt/format.h>
 #include <weir/core/error.h>
+#include <weir/core/parallel.h>
 #include <weir/core/paths.h>
 #include <weir/render/laboratory.h>
+#include <weir/render/lanes.h>
 #include <weir/render/render.h>
 #include <weir/trace/acceleration.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <utility>
 
 namespace weir::render {
 
@@ -35,32 +40,47 @@ void Laboratory::requireNoValidationMessages() const {
   throw RuntimeError(text);
 }
 
-std::unique_ptr<execute::Executor> Laboratory::executor(graph::CompiledGraph graph) {
+std::unique_ptr<execute::Executor> Laboratory::executor(graph::CompiledGraph graph, uint32_t lanes) {
   execute::ExecutorOptions options;
   options.backend = backend_;
   options.sceneFolder = sceneFolder_;
+  options.lanes = lanes;
   return std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(graph), options);
 }
 
 Restarts::Restarts(Laboratory& laboratory, graph::CompiledGraph graph, const RestartOptions& options)
-    : options_(options), executor_(laboratory.executor(std::move(graph))), player_(laboratory.stage()) {
-  executor_->captureTo({options_.output}, [this](const std::string&, const image::Picture& picture) {
-    mean_.add(picture);
-    if (++delivered_ < (options_.lastOnly ? 1 : options_.frames)) return;
-    delivered_ = 0;
-    const FrameMean whole = std::exchange(mean_, {});
-    (*sink_)(whole.mean());
-  });
+    : options_(options),
+      lanes_(options.lanes == 0 ? lanesThatFill(laboratory.device(), graph) : options.lanes),
+      executor_(laboratory.executor(std::move(graph), lanes_)),
+      player_(laboratory.stage()),
+      means_(lanes_) {
+  executor_->captureLanesTo({options_.output},
+                            [this](const std::string&, std::span<const image::Picture> lanes) { take(lanes); });
+}
+
+void Restarts::take(std::span<const image::Picture> lanes) {
+  // Lane by lane on all cores: one core takes longer for a frame's pictures than a GPU for the frame.
+  const auto add = [&](size_t lane) { means_[lane].add(lanes[lane]); };
+  parallelFor(lanes.size(), std::cref(add));
+  if (++delivered_ < (options_.lastOnly ? 1 : options_.frames)) return;
+  delivered_ = 0;
+  std::vector<image::Picture> wholes(lanes.size());
+  parallelFor(lanes.size(), [&](size_t lane) { wholes[lane] = std::exchange(means_[lane], {}).mean(); });
+  (*sink_)(wholes);
 }
 
 void Restarts::run(uint32_t count, const Sink& sink) {
   sink_ = &sink;
-  for (uint32_t r = 0; r < count; ++r, ++done_) {
+  for (uint32_t left = count; left > 0;) {
+    seeds_.resize(std::min(left, lanes_));
+    for (uint32_t& seed : seeds_) seed = restartSeed(options_.seed, done_++);
     executor_->resetHistory();
     for (uint32_t f = 0; f < options_.frames; ++f) {
-      executor_->frame(player_.frame(options_.firstFrame + f, restartSeed(options_.seed, done_)),
-                       !options_.lastOnly || f + 1 == options_.frames);
+      execute::FrameInput input = player_.frame(options_.firstFrame + f, 0);
+      input.laneSeeds = seeds_;
+      executor_->frame(input, !options_.lastOnly || f + 1 == options_.frames);
     }
+    left -= static_cast<uint32_t>(seeds_.size());
   }
   executor_->finish();
   sink_ = nullptr;

@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,8 @@ class Laboratory {
   const gpu::Device& device() const { return *device_; }
   /// Throws RuntimeError with what the validation layers have said so far.
   void requireNoValidationMessages() const;
-  std::unique_ptr<execute::Executor> executor(graph::CompiledGraph graph);
+  /// `lanes`: as in execute::ExecutorOptions.
+  std::unique_ptr<execute::Executor> executor(graph::CompiledGraph graph, uint32_t lanes = 1);
 
  private:
   Registry registry_;
@@ -54,27 +56,38 @@ struct RestartOptions {
   uint32_t seed = 0;
   /// The last frame alone, as where a clip moves the scene and no two frames show the same; else the mean of all.
   bool lastOnly = false;
+  /// Restarts that run at a time, 1 … execute::SceneFrame::kMostLanes, each with memory of its own; 0: as lanesThatFill
+  /// says. Pictures are the same, whatever it is.
+  uint32_t lanes = 0;
 };
 
-/// Independent restarts of a graph, one picture each. Nothing waits for a restart's end but the last one's.
+/// Independent restarts of a graph, one picture each, several at a time in the lanes of one executor. Nothing waits for
+/// a restart's end but the last one's.
 class Restarts {
  public:
-  /// The laboratory must outlive this, and be open. Throws InputError when there is no such picture among the outputs.
+  /// The laboratory must outlive this, and be open. Throws InputError when there is no such picture among the outputs,
+  /// or no such number of lanes; RuntimeError when memory does not suffice.
   Restarts(Laboratory& laboratory, graph::CompiledGraph graph, const RestartOptions& options);
   Restarts(const Restarts&) = delete;
   Restarts& operator=(const Restarts&) = delete;
-  using Sink = std::function<void(const image::Picture&)>;
+  /// Is given the pictures of restarts that ran at a time, in order.
+  using Sink = std::function<void(std::span<const image::Picture>)>;
   /// So many more, in order, each with a seed of its own and cleared history.
   void run(uint32_t count, const Sink& sink);
   uint32_t done() const { return done_; }
+  uint32_t lanes() const { return lanes_; }
   execute::Executor& executor() { return *executor_; }
 
  private:
+  void take(std::span<const image::Picture> lanes);
+
   RestartOptions options_;
+  uint32_t lanes_;
   std::unique_ptr<execute::Executor> executor_;
   Player player_;
   uint32_t done_ = 0, delivered_ = 0;
-  FrameMean mean_;
+  std::vector<uint32_t> seeds_;   ///< of the restarts that run now
+  std::vector<FrameMean> means_;  ///< by lane
   const Sink* sink_ = nullptr;
 };
 

@@ -2,6 +2,7 @@
 #include <weir/core/error.h>
 #include <weir/core/text.h>
 #include <weir/image/metrics.h>
+#include <weir/render/lanes.h>
 #include <weir/render/render.h>
 #include <weir/render/verify.h>
 #include <weir/render/write_file.h>
@@ -28,6 +29,7 @@ void checkOptions(const VerifyOptions& o) {
   if (o.restarts < 2) throw InputError(fmt::format("--restarts {}: must be at least 2", o.restarts));
   if (o.mostRestarts != 0 && o.mostRestarts < o.restarts)
     throw InputError(fmt::format("--max-restarts {}: must be at least --restarts {}", o.mostRestarts, o.restarts));
+  parseLanes(o.lanes);
   if (o.tile == 0 || o.tile > 4096) throw InputError(fmt::format("--tile {}: must be 1 … 4096", o.tile));
   const image::VerdictOptions& v = o.verdict;
   if (!(v.alpha > 0.0 && v.alpha <= 0.5))
@@ -214,16 +216,23 @@ Verification verify(const VerifyOptions& o) {
   v.animation = animationOf(o, stage);
 
   const bool moves = stage.playback.has_value();
-  Restarts restarts(laboratory, std::move(graph), {o.output, o.frames, o.firstFrame, o.seed, moves});
+  Restarts restarts(laboratory, std::move(graph),
+                    {o.output, o.frames, o.firstFrame, o.seed, moves, parseLanes(o.lanes)});
+  v.lanes = restarts.lanes();
   if (restarts.executor().meaning(o.output) == Meaning::Display)
     warn(fmt::format("output '{}' holds display values: the mean of tone-mapped pictures is not the tone-mapped mean",
                      o.output));
   std::unique_ptr<Restarts> rendered;
   if (o.reference.empty()) {
     // Seeds of its own: of the same graph the reference is another sample, not the same one again.
-    RestartOptions r{"radiance", moves ? 1 : o.referenceFrames,
-                     moves ? static_cast<uint32_t>(lastFrame(o)) : o.firstFrame, restartSeed(o.seed, ~0u), moves};
+    RestartOptions r{"radiance",
+                     moves ? 1 : o.referenceFrames,
+                     moves ? static_cast<uint32_t>(lastFrame(o)) : o.firstFrame,
+                     restartSeed(o.seed, ~0u),
+                     moves,
+                     parseLanes(o.lanes)};
     rendered = std::make_unique<Restarts>(laboratory, std::move(referenceGraph), r);
+    v.referenceLanes = rendered->lanes();
   }
 
   const auto collect = [&](Restarts& from, image::EvidenceCollector& into, uint32_t until, const char* what,
@@ -231,8 +240,8 @@ Verification verify(const VerifyOptions& o) {
     const Clock::time_point start = Clock::now();
     const uint32_t first = from.done();
     if (until <= first) return;
-    from.run(until - first, [&](const image::Picture& picture) {
-      into.add(picture);
+    from.run(until - first, [&](std::span<const image::Picture> pictures) {
+      into.add(pictures);
       if (o.progress) o.progress(what, into.restarts(), until);
     });
     seconds = secondsSince(start) / (until - first);

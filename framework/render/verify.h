@@ -25,6 +25,7 @@ struct VerifyOptions {
   uint32_t mostRestarts = 0;
   uint32_t frames = 4, firstFrame = 0;
   uint32_t seed = 0;
+  std::string lanes = "auto";  ///< restarts at a time, as `--lanes` (render/lanes.h)
   std::string output = "radiance";
 
   std::string reference;        ///< file; empty: rendered here
@@ -52,6 +53,7 @@ struct Verification {
   std::string referenceName;  ///< graph or file
   std::string device, scene, lights, camera, animation;
   double secondsPerRestart = 0, secondsPerReferenceRestart = 0;
+  uint32_t lanes = 1, referenceLanes = 1;  ///< restarts that ran at a time
   int look = 1, looks = 1;
   image::Picture mean, referenceMean;
 };

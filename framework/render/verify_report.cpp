@@ -100,6 +100,7 @@ std::string verificationJson(const Verification& v, const VerifyOptions& o) {
             {"seed", o.seed},
             {"restarts", d.restarts},
             {"frames", o.frames},
+            {"lanes", v.lanes},
             {"look", v.look},
             {"looks", v.looks},
             {"seconds_per_restart", v.secondsPerRestart},
@@ -109,6 +110,7 @@ std::string verificationJson(const Verification& v, const VerifyOptions& o) {
               {"set", o.referenceOverrides.set},
               {"restarts", d.referenceRestarts},
               {"frames", o.referenceFrames},
+              {"lanes", v.referenceLanes},
               {"seconds_per_restart", v.secondsPerReferenceRestart}}},
             {"coarse", scaleJson(d.coarse)},
             {"fine", scaleJson(d.fine)}};

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <weir/image/verdict.h>
 #include <weir/render/laboratory.h>
+#include <weir/render/lanes.h>
 #include <weir/render/write_file.h>
 
 #include <CLI/CLI.hpp>
@@ -20,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 struct Words {
   render::StageOptions stage;
-  std::string device, trace = "auto", json, graphs = "graphs";
+  std::string device, trace = "auto", json, graphs = "graphs", lanes = "auto";
   uint32_t size = 256, restarts = 64, frames = 4, referenceRestarts = 16, referenceSamples = 4, tile = 16, seed = 0;
   std::vector<std::string> set;
   bool modes = false;
@@ -31,11 +32,14 @@ struct Words {
 image::EvidenceCollector collect(const Words& words, render::Laboratory& laboratory, const std::string& graph,
                                  const graph::Overrides& overrides, uint32_t restarts, uint32_t frames, uint32_t seed) {
   const bool moves = laboratory.stage().playback.has_value();
-  render::Restarts runs(
-      laboratory, laboratory.compile(words.graphs + "/" + graph, overrides, words.size, words.size),
-      {.frames = frames, .firstFrame = moves ? words.frames - frames : 0, .seed = seed, .lastOnly = moves});
+  render::Restarts runs(laboratory, laboratory.compile(words.graphs + "/" + graph, overrides, words.size, words.size),
+                        {.frames = frames,
+                         .firstFrame = moves ? words.frames - frames : 0,
+                         .seed = seed,
+                         .lastOnly = moves,
+                         .lanes = render::parseLanes(words.lanes)});
   image::EvidenceCollector result(words.tile, 4 * words.tile);
-  runs.run(restarts, [&](const image::Picture& picture) { result.add(picture); });
+  runs.run(restarts, [&](std::span<const image::Picture> pictures) { result.add(pictures); });
   return result;
 }
 
@@ -85,6 +89,7 @@ std::vector<Setting> settingsOf(const Words& words) {
 }
 
 int run(const Words& words) {
+  render::parseLanes(words.lanes);  // before anything else, as a bad word ends it all
   render::Laboratory laboratory({});
   laboratory.open(words.stage, {.device = words.device, .trace = words.trace}, 1.0f);
   const image::Evidence reference =
@@ -163,6 +168,7 @@ int main(int argc, char** argv) {
   app.add_option("--tile", words.tile);
   app.add_option("--seed", words.seed);
   app.add_option("--set", words.set)->allow_extra_args(false);
+  app.add_option("--lanes", words.lanes, "Restarts that run at a time: a number or auto");
   app.add_option("--device", words.device);
   app.add_option("--trace", words.trace);
   app.add_option("--graphs", words.graphs, "Folder with restir_di.json and all_lights.json");

@@ -171,6 +171,24 @@ TEST_F(Verify, VerdictsAreTheSameEveryTime) {
   EXPECT_NE(numbers().at("whole"), a.at("whole"));
 }
 
+// However many restarts run at a time; 20 are no multiple of 6.
+TEST_F(Verify, VerdictsAreTheSameInAnyNumberOfLanes) {
+  const std::string more = rendered() + "--restarts 20 --tolerance 0.05 --json " + file("v.json") + " --lanes ";
+  std::vector<Json> all;
+  for (const char* lanes : {"1", "6"}) {
+    const Ran r = verify(restir, more + lanes, 2);  // whatever the verdict is
+    ASSERT_EQ(r.err, "");
+    Json j = numbers();
+    for (Json* part : {&j, &j.at("reference")}) {
+      EXPECT_EQ(part->at("lanes").dump(), lanes);
+      part->erase("lanes");
+      part->erase("seconds_per_restart");
+    }
+    all.push_back(j);
+  }
+  EXPECT_EQ(all[0], all[1]);
+}
+
 TEST_F(Verify, RefusesReferencesOfSomethingElse) {
   TemporaryFolder elsewhere;
   const std::string r = elsewhere.path() + "/r.exr", e = elsewhere.path() + "/e.exr";
@@ -200,6 +218,11 @@ TEST_F(Verify, RefusesWhatMakesNoSense) {
   expectRefused(start + "--tile 0", "--tile 0");
   expectRefused(start + "--frames 0", "--frames");
   expectRefused(start + "--max-restarts 3", "--max-restarts 3");
+  for (const char* lanes : {"0", "65", "1000000", "99999999999999999999", "many", "3.5", "4x", "AUTO"})
+    expectRefused(start + "--lanes " + lanes, "--lanes " + std::string(lanes) + ": must be auto or 1 … 64");
+  expectRefused(start + "--lanes=-1", "--lanes -1: must be auto or 1 … 64");
+  expectRefused(start + "--lanes -1", "--lanes");
+  expectRefused(start + "--lanes", "--lanes");
   expectRefused(start + "--reference x.exr", "only one of them");
   expectRefused(start + "--reference-stderr x.exr", "needs --reference");
   expectRefused(start + "--reference-exact", "needs --reference");

@@ -48,6 +48,7 @@ class GraphRun {
     std::string shaders = sourcePath("tests/execute/shaders");
     bool keepAll = true;  ///< every resource can be read after a frame; false: they share memory
     bool poison = false;
+    uint32_t lanes = 1;
   };
   /// `passes` is the graph's "passes", JSON, `output` a port of one of them; the entries' types are "own.<name>".
   GraphRun(const std::string& passes, const std::string& output, const std::vector<WeirPassEntry>& entries,
@@ -62,6 +63,7 @@ class GraphRun {
     execute::ExecutorOptions executorOptions;
     executorOptions.backend = trace::chooseBackend("auto", *device_);
     executorOptions.poison = options.poison;
+    executorOptions.lanes = options.lanes;
     executor_ = std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(compiled),
                                                     executorOptions);
   }
@@ -88,8 +90,8 @@ class GraphRun {
     }
   }
   template <typename T = uint32_t>
-  std::vector<T> read(const std::string& resource) {
-    const std::vector<std::byte> bytes = executor_->readResource(resource);
+  std::vector<T> read(const std::string& resource, uint32_t lane = 0) {
+    const std::vector<std::byte> bytes = executor_->readResource(resource, lane);
     std::vector<T> values(bytes.size() / sizeof(T));
     std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
     return values;

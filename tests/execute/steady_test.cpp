@@ -74,7 +74,7 @@ class Steady : public ::testing::Test {
     return o;
   }
   void start(const std::string& graph, const graph::Overrides& overrides = {},
-             const std::string& scene = "scenes/cornell.glb") {
+             const std::string& scene = "scenes/cornell.glb", uint32_t lanes = 1) {
     const std::string path = graph.starts_with("/") ? graph : sourcePath("graphs/" + graph);
     executor_.reset();
     scene_.reset();
@@ -87,6 +87,8 @@ class Steady : public ::testing::Test {
                                                device_.capabilities().accelerationStructure);
     execute::ExecutorOptions o;
     o.backend = trace::chooseBackend("auto", device_);
+    o.lanes = lanes;
+    seeds_.assign(lanes, 1);
     executor_ = std::make_unique<execute::Executor>(
         device_, compiler_, registry_, *scene_, graph::compileFile(path, overrides, registry_.catalog(), 32, 32), o);
   }
@@ -94,7 +96,8 @@ class Steady : public ::testing::Test {
   uint64_t allocationsIn(uint32_t frames) {
     uint64_t sum = 0;
     for (uint32_t i = 0; i < frames; ++i) {
-      const execute::FrameInput input = player_->frame(number_++, 1);
+      execute::FrameInput input = player_->frame(number_++, 1);
+      input.laneSeeds = seeds_;
       sum += allocationsOf([&] { executor_->frame(input); });
     }
     return sum;
@@ -108,6 +111,7 @@ class Steady : public ::testing::Test {
   std::unique_ptr<scene::SceneGpu> scene_;
   std::unique_ptr<execute::Executor> executor_;
   uint32_t number_ = 0;
+  std::vector<uint32_t> seeds_;
 };
 
 TEST_F(Steady, TheCounterCounts) {
@@ -126,6 +130,12 @@ TEST_F(Steady, AFrameAllocatesNothing) {
 
 TEST_F(Steady, AFrameOfAMovingSceneAllocatesNothing) {
   start("restir_di.json", {}, "scenes/cornell-moving.glb");
+  allocationsIn(4);
+  EXPECT_EQ(allocationsIn(10), 0u);
+}
+
+TEST_F(Steady, AFrameOfSeveralLanesAllocatesNothing) {
+  start("restir_di.json", {}, "scenes/cornell-moving.glb", 3);
   allocationsIn(4);
   EXPECT_EQ(allocationsIn(10), 0u);
 }
@@ -152,7 +162,7 @@ VkResult VKAPI_CALL countingIdle(VkDevice device) {
 }
 
 TEST_F(Steady, OneSubmissionAFrameAndNoWaitForAnIdleDevice) {
-  start("restir_di.json");
+  start("restir_di.json", {}, "scenes/cornell.glb", 2);
   allocationsIn(3);
   realSubmit = std::exchange(vkQueueSubmit2, countingSubmit);
   realIdle = std::exchange(vkDeviceWaitIdle, countingIdle);

@@ -1,9 +1,16 @@
 #include <gtest/gtest.h>
 #include <weir/core/error.h>
+#include <weir/image/evidence.h>
 #include <weir/image/statistics.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <set>
+#include <span>
+#include <utility>
 
 #include "image/support.h"
 
@@ -66,6 +73,61 @@ TEST(Restarts, MergingEqualsAdding) {
                InputError);
   EXPECT_THROW(none.add(randomPicture(11, 19, 1)), InputError);
   EXPECT_THROW(RestartAccumulator(8).mean(), InputError);
+}
+
+// Of pictures that are large enough to be cut into bands, with a last row of tiles that is not whole.
+TEST(Restarts, AddedTogetherAreThoseAddedOneByOne) {
+  std::vector<Picture> pictures;
+  for (uint32_t i = 0; i < 6; ++i) pictures.push_back(randomPicture(301, 203, i));
+  pictures[4].at(7, 150)[1] = std::numeric_limits<float>::quiet_NaN();
+  pictures[5].at(6, 3)[2] = std::numeric_limits<float>::infinity();
+  EvidenceCollector single(16, 64), together(16, 64);
+  for (const Picture& picture : pictures) single.add(picture);
+  together.add(std::span(pictures).first(2));
+  together.add(std::span<const Picture>{});
+  together.add(std::span(pictures).subspan(2));
+  EXPECT_EQ(together.restarts(), 6u);
+  EXPECT_EQ(together.nonFinite().pixels, 2u);
+  EXPECT_EQ(together.nonFinite().x, 7u);
+  EXPECT_EQ(together.nonFinite().y, 150u);
+  EXPECT_EQ(together.nonFinite().restart, 4u);
+  const auto bits = [](float v) { return std::bit_cast<uint32_t>(v); };
+  for (const auto& [a, b] :
+       {std::pair(single.mean(), together.mean()), std::pair(single.standardError(), together.standardError())})
+    EXPECT_TRUE(std::ranges::equal(a.rgba, b.rgba, {}, bits, bits));
+  const Evidence one = single.evidence(), all = together.evidence();
+  const auto same = [](const ColourEstimates& a, const ColourEstimates& b) {
+    return std::ranges::equal(a, b, [](const Estimate& x, const Estimate& y) {
+      return std::bit_cast<uint64_t>(x.mean) == std::bit_cast<uint64_t>(y.mean) && x.variance == y.variance &&
+             x.freedom == y.freedom && x.cumulant == y.cumulant;
+    });
+  };
+  EXPECT_TRUE(std::ranges::equal(one.fineTiles, all.fineTiles, same));
+  EXPECT_TRUE(std::ranges::equal(one.coarseTiles, all.coarseTiles, same));
+  EXPECT_TRUE(same(one.whole, all.whole));
+  pictures[5] = randomPicture(203, 301, 5);
+  EXPECT_THROW(together.add(pictures), InputError);
+  EXPECT_EQ(together.restarts(), 6u) << "all or none";
+}
+
+TEST(Bands, AreWholeRowsOfTilesAndTogetherThePicture) {
+  for (const TileGrid grid : {TileGrid{1000, 1001, 16}, TileGrid{5, 5, 64}, TileGrid{4000, 3, 1}, TileGrid{1, 1, 1}}) {
+    std::mutex mutex;
+    std::set<std::pair<uint32_t, uint32_t>> bands;
+    forBands(grid, 3, [&](uint32_t first, uint32_t end) {
+      const std::lock_guard lock(mutex);
+      bands.emplace(first, end);
+    });
+    uint32_t at = 0;
+    for (const auto& [first, end] : bands) {
+      EXPECT_EQ(first, at);
+      EXPECT_GT(end, first);
+      EXPECT_TRUE(first % grid.side == 0 && (end % grid.side == 0 || end == grid.height));
+      at = end;
+    }
+    EXPECT_EQ(at, grid.height);
+  }
+  forBands({0, 0, 16}, 1, [](uint32_t, uint32_t) { ADD_FAILURE() << "there is nothing"; });
 }
 
 /// Restarts of an estimator that is right but for a relative bias: every tile mean is normal with relative
