@@ -21,7 +21,7 @@ uint32_t parseLanes(const std::string& words) {
 }
 
 uint32_t lanesThatFill(const gpu::Device& device, const graph::CompiledGraph& graph) {
-  constexpr uint64_t kPixels = uint64_t{1} << 20, kMost = 16;
+  constexpr uint64_t kPixels = uint64_t{1} << 22, kMost = 16;
   // A CPU's cores are busy with one picture, and its caches hold one better than several.
   if (device.info().kind == "cpu") return 1;
   const uint64_t pixels = std::max<uint64_t>(1, uint64_t{graph.width} * graph.height);

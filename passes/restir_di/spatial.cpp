@@ -16,6 +16,12 @@ void describeReuse(PassDescription& d) {
           "found the sample), balance (balance heuristic, cost grows with the square of the neighbours) or defensive "
           "pairwise; all but biased are unbiased with visibilityRays in every reuse, or with neither those nor "
           "Initial.visibility");
+  d.param("zThreshold", 0.01f)
+      .range(0, 1)
+      .doc(
+          "By z: a surface counts among those that could have found a sample where the sample's target is at least so "
+          "much of what it is at this pixel. 0: wherever it isn't zero (Bitterli et al. 2020), with no bound on the "
+          "variance");
   d.param("visibilityRays", false)
       .specialises()
       .doc(

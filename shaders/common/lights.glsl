@@ -47,11 +47,14 @@ float mixedPdf(Light light, float uniformShare) {
 // 32-bit place on a light from two uniform numbers.
 uint packPlace(vec2 u) { return uint(u.x * 65536.0) | (uint(u.y * 65536.0) << 16u); }
 
-// Uniform over the triangle (Osada et al. 2002): barycentrics of vertices 1 and 2.
+// Barycentrics of vertices 1 and 2, uniform over the triangle: places fill the parallelogram of both edges evenly, and its far half is
+// folded onto the near one along the edge between them, across which places stay neighbours. So they are 1/65536 of a side apart
+// everywhere; by a square root (Osada et al. 2002) they would be 1/256 apart at vertex 0, and a surface close to it would see a light of
+// few points.
 vec2 placeOnTriangle(uint place) {
-  const vec2 u = (vec2(place & 0xffffu, place >> 16u) + 0.5) / 65536.0;
-  const float root = MUTANT(40, pow(u.x, 0.45), sqrt(u.x));
-  return vec2(root * (1.0 - u.y), root * u.y);
+  vec2 u = (vec2(place & 0xffffu, place >> 16u) + 0.5) / 65536.0;
+  u.x = MUTANT(40, pow(u.x, 0.9), u.x);
+  return u.x + u.y > 1.0 ? 1.0 - u.yx : u;
 }
 
 // The light that a triangle is, for rays that hit one; kNoLight: none.
@@ -173,11 +176,6 @@ bool meetsTriangle(Light light, vec3 position, vec3 direction, out vec2 barycent
 }
 
 // The place whose placeOnTriangle() lies at these barycentrics, to within its 16 bits a side.
-uint placeAt(vec2 barycentrics) {
-  const vec2 b = clamp(barycentrics, 0.0, 1.0);
-  const float root = min(b.x + b.y, 1.0);
-  const vec2 u = vec2(root * root, root > 0.0 ? min(b.y / root, 1.0) : 0.0);
-  return packPlace(min(u, 65535.5 / 65536.0));
-}
+uint placeAt(vec2 barycentrics) { return packPlace(clamp(barycentrics, 0.0, 65535.5 / 65536.0)); }
 
 #endif

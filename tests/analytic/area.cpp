@@ -57,6 +57,28 @@ Form halfOccluded() {
       {allLights(10, 2)}};
 }
 
+// A lamp as wide as a square, close over the floor under its first corner: what stands for its points is evenly spread
+// there, too. The far corners add next to nothing.
+Form cornerOfLargeLight() {
+  Builder b = floorScene();
+  const Polygon corners = {Vec(0, 0.25, 0), Vec(128, 0.25, 0), Vec(0, 0.25, 128)};
+  scene::Primitive p;
+  for (const Vec& corner : corners) {
+    p.positions.emplace_back(corner);
+    p.normals.emplace_back(0, -1, 0);
+    p.uv0.emplace_back(0, 0);
+  }
+  p.indices = {0, 1, 2};
+  p.material = b.material(emitter(kRadiance));
+  b.add(p);
+  const scene::Camera camera = lookAt({-0.4f, 0.25f, -0.4f}, {0, 0, 0}, 24);
+  return {"corner of a large triangle",
+          b.scene,
+          camera,
+          onFloor(camera, [=](const Vec& at) { return Vec(kRadiance) * irradiance(at, corners); }),
+          {restir(96), pathTracer(0, 480)}};
+}
+
 Polygon disc(double radius, double height, int n) {
   Polygon result;
   for (int i = 0; i < n; ++i) {
@@ -163,7 +185,7 @@ Form texturedEmitter() {
 }  // namespace
 
 std::vector<Form (*)()> areaForms() {
-  return {quadLight, halfOccluded, coaxialDisc, sphereLight, doubleSided, texturedEmitter};
+  return {quadLight, halfOccluded, cornerOfLargeLight, coaxialDisc, sphereLight, doubleSided, texturedEmitter};
 }
 
 }  // namespace weir::test::analytic

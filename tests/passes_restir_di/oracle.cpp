@@ -89,8 +89,8 @@ Vec bsdfCos(const Surface& s, const Vec& l) {
 }
 
 glm::dvec2 barycentrics(double u, double v) {
-  const double root = std::sqrt(u);
-  return {root * (1.0 - v), root * v};
+  if (u + v > 1.0) return {1.0 - v, 1.0 - u};
+  return {u, v};
 }
 
 glm::dvec2 barycentrics(uint32_t place) {
@@ -229,10 +229,13 @@ const char* nameOf(Mis mis) {
 double misWeight(const std::vector<MergeInput>& inputs, size_t i, Mis mis) {
   const std::vector<double>& p = inputs[i].targets;
   const auto confidence = [&](size_t j) { return inputs[j].confidence; };
+  const auto contains = [&](size_t j) {
+    return p[j] > 0.0 && p[j] >= (confidence(0) > 0.0 ? kZThreshold * p[0] : 0.0);
+  };
   double total = 0.0, containing = 0.0, balance = 0.0;
   for (size_t j = 0; j < inputs.size(); ++j) {
     total += confidence(j);
-    if (p[j] > 0.0) containing += confidence(j);
+    if (contains(j)) containing += confidence(j);
     balance += confidence(j) * p[j];
   }
   const double own = confidence(0), others = total - own;
@@ -240,7 +243,7 @@ double misWeight(const std::vector<MergeInput>& inputs, size_t i, Mis mis) {
     case Mis::Biased:
       return confidence(i) / total;
     case Mis::Z:
-      return p[i] > 0.0 ? confidence(i) / containing : 0.0;
+      return contains(i) ? confidence(i) / containing : 0.0;
     case Mis::Balance:
       return confidence(i) * p[i] / balance;
     case Mis::Pairwise:

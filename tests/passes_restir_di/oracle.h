@@ -92,12 +92,14 @@ struct Merged {
   std::vector<double> weight;       ///< W if it does; 0: what comes out is a null sample
   double confidence = 0.0;
 };
+constexpr double kZThreshold = 0.01;  ///< what the passes have by default
 enum class Mis { Biased, Z, Balance, Pairwise };
 constexpr Mis kEveryMis[] = {Mis::Biased, Mis::Z, Mis::Balance, Mis::Pairwise};
 constexpr Mis kUnbiasedMis[] = {Mis::Z, Mis::Balance, Mis::Pairwise};
 const char* nameOf(Mis mis);  ///< as the passes' parameter has it
-/// m_i(x_i), with which W_i counts: Bitterli et al. 2020 (biased, z), Talbot et al. 2005 (balance), Lin et al. 2022
-/// (pairwise), each with confidence weights. All but the first sum to one over the domains that contain a sample.
+/// m_i(x_i), with which W_i counts: Bitterli et al. 2020 (biased, z with the threshold above), Talbot et al. 2005
+/// (balance), Lin et al. 2022 (pairwise), each with confidence weights. All but the first sum to one over the domains
+/// that contain a sample.
 double misWeight(const std::vector<MergeInput>& inputs, size_t i, Mis mis);
 /// The merge. By z samples are chosen by c_i p̂_0(x_i) W_i, what was chosen has its Z divided out; else by m_i p̂_0 W_i.
 Merged merge(const std::vector<MergeInput>& inputs, Mis mis);
