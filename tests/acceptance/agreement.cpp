@@ -5,12 +5,14 @@
 //   agreement --scene scenes/cornell-moving.glb --animate --time 0.3 --time-step 0.1 --size 256 --restarts 256 --frames
 //   6
 #include <fmt/format.h>
+#include <weir/core/error.h>
 #include <weir/image/verdict.h>
 #include <weir/render/laboratory.h>
 #include <weir/render/lanes.h>
 #include <weir/render/write_file.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -23,7 +25,7 @@ struct Words {
   render::StageOptions stage;
   std::string device, trace = "auto", json, graphs = "graphs", lanes = "auto";
   uint32_t size = 256, restarts = 64, frames = 4, referenceRestarts = 16, referenceSamples = 4, tile = 16, seed = 0;
-  std::vector<std::string> set;
+  std::vector<std::string> set, only = {""};
   bool modes = false;
 };
 
@@ -97,7 +99,11 @@ int run(const Words& words) {
               words.referenceRestarts, 1, words.seed + 1000)
           .evidence();
 
-  const std::vector<Setting> settings = settingsOf(words);
+  std::vector<Setting> settings = settingsOf(words);
+  std::erase_if(settings, [&](const Setting& s) {
+    return std::ranges::none_of(words.only, [&](const std::string& part) { return s.name.starts_with(part); });
+  });
+  if (settings.empty()) throw InputError("--only leaves no setting");
   Json j = {{"device", laboratory.device().info().name},
             {"scene", laboratory.stage().sceneLabel},
             {"lights", laboratory.stage().lightsLabel},
@@ -153,6 +159,7 @@ int main(int argc, char** argv) {
   CLI::App app("Do the unbiased settings of restir_di agree with reference.AllLights?");
   app.add_option("--scene", words.stage.scene)->required();
   app.add_option("--lights", words.stage.lights);
+  app.add_option("--light-seed", words.stage.lightSeed);
   app.add_flag("--replace-lights", words.stage.replaceLights, "With --lights: the scene's own go");
   app.add_option("--environment", words.stage.environment);
   app.add_option("--camera", words.stage.camera);
@@ -173,6 +180,7 @@ int main(int argc, char** argv) {
   app.add_option("--trace", words.trace);
   app.add_option("--graphs", words.graphs, "Folder with restir_di.json and all_lights.json");
   app.add_flag("--modes", words.modes, "Every unbiased combination of MIS weights, visibility and reuse");
+  app.add_option("--only", words.only, "Settings whose names begin so");
   app.add_option("--json", words.json);
   CLI11_PARSE(app, argc, argv);
   try {

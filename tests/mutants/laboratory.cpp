@@ -38,13 +38,22 @@ Laboratory::Laboratory(const gpu::Device& device, const Situation& situation, do
       registry_(pluginSearchPath({})),
       stage_(situation.stage()) {
   scene_ = std::make_unique<scene::SceneGpu>(device_, stage_.scene, stage_.prepared, true);
+  renderReference(kReferenceSeed);
+}
+
+void Laboratory::renderReference(uint32_t seed) {
   // Where things move, the reference shows the frame that is looked at, and nothing before it.
   const uint32_t first = moves(situation_, stage_) ? situation_.frames - 1 : 0;
   const std::vector<std::string> nothing;
-  const Words words{
-      situation_.reference, situation_.referenceSet, nothing, scaledBy(situation_.referenceRestarts, effort), 1, first,
-      kReferenceSeed};
-  truth_ = run(*executor(words, *scene_, compiler_), words, stage_).evidence();
+  const Words words{situation_.reference,
+                    situation_.referenceSet,
+                    nothing,
+                    scaledBy(situation_.referenceRestarts, effort_),
+                    1,
+                    first,
+                    seed};
+  if (!reference_) reference_ = executor(words, *scene_, compiler_);
+  truth_ = run(*reference_, words, stage_).evidence();
 }
 
 Laboratory::~Laboratory() = default;

@@ -65,6 +65,8 @@ class Laboratory {
 
   /// `mutant` null: everything as it should be.
   Finding examine(const Mutant* mutant, uint32_t seed);
+  /// What is compared with is rendered anew, by other random numbers. The first one is there from the start.
+  void renderReference(uint32_t seed);
   const Situation& situation() const { return situation_; }
 
  private:
@@ -84,8 +86,8 @@ class Laboratory {
   render::Stage stage_;
   std::unique_ptr<scene::SceneGpu> scene_;
   image::Evidence truth_;
-  shader::Compiler compiler_;                 ///< of everything without a bug
-  std::unique_ptr<execute::Executor> clean_;  ///< made once: many clean runs are asked for
+  shader::Compiler compiler_;                             ///< of everything without a bug
+  std::unique_ptr<execute::Executor> reference_, clean_;  ///< made once: many clean runs are asked for
 };
 
 /// All situations, and all bugs in the order of their numbers.
