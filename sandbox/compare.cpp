@@ -56,6 +56,9 @@ Comparison compare(const Options& options) {
   const image::Picture* maskOrAll = options.mask.empty() ? nullptr : &mask;
   result.hdr = radiance;
   result.metrics = image::measure(picture, reference, {.mask = maskOrAll, .hdr = result.hdr, .flip = !options.noFlip});
+  if (result.metrics.pixels == 0)
+    throw InputError(fmt::format("'{}' and '{}' have no pixel that is finite in both: nothing can be compared",
+                                 options.picture, options.reference));
   if (options.tiles > 0) result.tiles = image::compareTiles(picture, reference, options.tiles, maskOrAll);
   return result;
 }
@@ -101,6 +104,11 @@ void printJson(const Options& options, const Comparison& c) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+/// There is none against a reference that is black.
+std::string percent(double value) {
+  return std::isfinite(value) ? fmt::format("{:>+12.4f} %", 100 * value) : fmt::format("{:>14}", "undefined");
+}
+
 void printTable(const Options& options, const Comparison& c) {
   const image::Metrics& m = c.metrics;
   for (const std::string& conflict : c.conflicts)
@@ -119,15 +127,15 @@ void printTable(const Options& options, const Comparison& c) {
     figure("  p99", m.flipP99);
   }
   row("bias R G B", fmt::format("{:>12.4g} {:>12.4g} {:>12.4g}", m.biasR, m.biasG, m.biasB));
-  row("relative bias", fmt::format("{:>+12.4f} %", 100 * m.relativeBias));
+  row("relative bias", percent(m.relativeBias));
   if (options.tiles == 0) return;
   const image::TileSummary& s = c.tiles;
-  fmt::print("\n{} tiles of {}²: relative difference RMS {:.4f} %, largest {:.4f} %; the worst:\n", s.tiles.size(),
-             s.grid.side, 100 * s.rmsRelative, 100 * s.maxRelative);
+  fmt::print("\n{} tiles of {}²: relative difference RMS{}, largest{}; the worst:\n", s.tiles.size(), s.grid.side,
+             percent(s.rmsRelative), percent(s.maxRelative));
   fmt::print("{:>7}{:>7}{:>14}{:>14}{:>12}\n", "x", "y", "reference", "difference", "relative");
   for (const size_t i : s.worst) {
     const image::TileDifference& t = s.tiles[i];
-    fmt::print("{:>7}{:>7}{:>14.6g}{:>14.6g}{:>+10.4f} %\n", t.x, t.y, t.reference, t.difference, 100 * t.relative);
+    fmt::print("{:>7}{:>7}{:>14.6g}{:>14.6g}{}\n", t.x, t.y, t.reference, t.difference, percent(t.relative));
   }
 }
 
@@ -144,6 +152,7 @@ void addCompareCommand(CLI::App& app) {
   command->add_flag("--json", options->json, "everything as JSON, with every tile");
   command->add_flag("--force", options->force, "compares pictures of different scenes, cameras or lights too");
   command->add_flag("--no-flip", options->noFlip, "leaves FLIP out, which takes most of the time");
+  command->footer("Exit status: 0 compared, however far apart; 2 bad input.");
   command->callback([options] {
     const Comparison comparison = compare(*options);
     options->json ? printJson(*options, comparison) : printTable(*options, comparison);

@@ -29,7 +29,8 @@ struct Metrics {
   double flipMean = 0;                     ///< mean over pixels of FLIP, in [0,1]
   double flipP99 = 0;                      ///< 99th percentile over pixels of FLIP, by nearest rank
   double biasR = 0, biasG = 0, biasB = 0;  ///< mean of a - b per channel, signed, in the pictures' unit
-  double relativeBias = 0;                 ///< (mean luminance of a - that of b) / that of b; NaN on a black reference
+  double relativeBias = 0;                 ///< (mean luminance of a - that of b) / that of b; NaN on a reference that
+                                           ///< is black or below
   uint64_t nonFinite = 0;  ///< pixels inside the mask where a or b has a NaN or an infinity: left out of all else
   uint64_t pixels = 0;     ///< pixels that were counted
 };
@@ -52,7 +53,8 @@ struct TileDifference {
   double differenceR = 0, differenceG = 0, differenceB = 0;  ///< mean of a - b
   double difference = 0;                                     ///< of luminance
   double reference = 0;                                      ///< mean luminance of b
-  double relative = 0;  ///< difference / max(reference, 1 % of the whole picture's mean reference luminance)
+  double relative = 0;  ///< difference / max(reference, 1 % of the whole picture's mean reference luminance); NaN where
+                        ///< that is not above 0
 };
 
 struct TileSummary {

@@ -115,7 +115,7 @@ double growth(double half, double standardErrors, double tolerance) {
 }
 
 std::string percent(double v) {
-  return fmt::format("{:+.4g} %", 100 * v);
+  return std::isfinite(v) ? fmt::format("{:+.4g} %", 100 * v) : "all of it (the reference is black)";
 }
 
 void explainUndecided(Verdict& v, const Evidence& measured, const Evidence& reference, const VerdictOptions& o) {

@@ -6,7 +6,9 @@
 //   - the colours of the picture and of its coarse tiles (a quarter): power against biases of a region;
 //   - the colours of the fine tiles (a quarter): where.
 // Within a question the bound is Šidák's over all of its comparisons, between questions the shares add up (Bonferroni),
-// so that whatever the dependence, an unbiased estimator is called biased with probability alpha at most.
+// so that whatever the dependence, an unbiased estimator is called biased with probability alpha at most. That leans on
+// both sides having seen what their means are made of: light in events so rare that one side has had none of them is a
+// difference like any other (docs/verify.md, "What it can't see").
 #pragma once
 
 #include <weir/image/evidence.h>

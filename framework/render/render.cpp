@@ -26,6 +26,7 @@ double secondsSince(Clock::time_point start) {
 }
 
 void checkOptions(const RenderOptions& o) {
+  checkFrames(o.firstFrame, o.frames);
   if (o.width == 0 || o.height == 0 || o.width > 16384 || o.height > 16384) {
     throw InputError(fmt::format("--size {}x{}: each side must be 1 … 16384", o.width, o.height));
   }
@@ -45,6 +46,10 @@ void checkOptions(const RenderOptions& o) {
     }
   }
   if (!o.statistics.empty()) checkWritable(o.statistics);
+  std::vector<NamedPath> files{{"--stats", o.statistics}};
+  for (const auto& [name, file] : o.outputs) files.emplace_back("--out " + name, file);
+  for (const auto& [name, file] : o.errors) files.emplace_back("--stderr " + name, file);
+  checkDistinct(files, {{"the graph", o.graph}, {"--scene", o.stage.scene}, {"--environment", o.stage.environment}});
 }
 
 /// `--exposure`: a --set for every tone map that has the parameter.
@@ -139,6 +144,11 @@ uint64_t peakHostBytes() {
 }
 
 }  // namespace
+
+void checkFrames(uint32_t first, uint32_t frames) {
+  if (uint64_t{first} + frames > uint64_t{1} << 32)
+    throw InputError(fmt::format("--first-frame {} and --frames {}: frame numbers end at {}", first, frames, ~0u));
+}
 
 uint32_t restartSeed(uint32_t seed, uint32_t restart) {
   if (restart == 0) return seed;

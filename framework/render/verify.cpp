@@ -10,6 +10,7 @@
 #include <bit>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 
 namespace weir::render {
@@ -37,7 +38,11 @@ void checkOptions(const VerifyOptions& o) {
   if (!(v.tolerance > 0.0 && v.tolerance <= 1.0))
     throw InputError(
         fmt::format("--tolerance {}: must be above 0, at most 1 (relative: 0.005 is half a percent)", v.tolerance));
-  if (!(v.tileTolerance > 0.0)) throw InputError(fmt::format("--tile-tolerance {}: must be above 0", v.tileTolerance));
+  if (!(v.tileTolerance > 0.0 && v.tileTolerance <= 100.0))
+    throw InputError(fmt::format("--tile-tolerance {}: must be above 0, at most 100", v.tileTolerance));
+  if (!(v.negligible >= 0.0 && v.negligible <= 0.1))
+    throw InputError(fmt::format("--negligible {}: must be 0 … 0.1", v.negligible));
+  checkFrames(o.firstFrame, o.frames);
   if (o.reference.empty()) {
     if (!o.referenceError.empty()) throw InputError("--reference-stderr needs --reference");
     if (o.referenceExact) throw InputError("--reference-exact needs --reference");
@@ -56,6 +61,12 @@ void checkOptions(const VerifyOptions& o) {
     checkWritable(o.picture);
   }
   if (!o.json.empty()) checkWritable(o.json);
+  checkDistinct({{"--out", o.picture}, {"--json", o.json}}, {{"the graph", o.graph},
+                                                             {"--scene", o.stage.scene},
+                                                             {"--environment", o.stage.environment},
+                                                             {"--reference", o.reference},
+                                                             {"--reference-stderr", o.referenceError},
+                                                             {"--reference-graph", o.referenceGraph}});
 }
 
 void requirePicture(const graph::CompiledGraph& graph, const std::string& file, const std::string& output) {
@@ -84,6 +95,29 @@ image::Picture finitePicture(const std::string& file, const VerifyOptions& o) {
   return picture;
 }
 
+/// A mean radiance below 0 is nothing that light can be.
+void requireLight(const std::string& file, const image::Picture& picture) {
+  double sums[3] = {};
+  for (size_t i = 0; i < picture.rgba.size(); ++i) {
+    if (i % 4 < 3) sums[i % 4] += picture.rgba[i];
+  }
+  for (const double sum : sums) {
+    if (sum < 0.0) throw InputError(fmt::format("'{}' is no picture of light: its mean is below 0", file));
+  }
+}
+
+/// Errors of tiles are put together from those of pixels, as if these were independent. Where all pixels of a frame
+/// share a place in the pixel, they aren't.
+void requireIndependentPixels(const std::string& file, const image::Picture& picture) {
+  const auto params = picture.attributes.find("weir.params");
+  if (params == picture.attributes.end() || params->second.find(".jitter=true") == std::string::npos) return;
+  throw InputError(fmt::format(
+      "'{}' was rendered with jitter, which all pixels of a frame share: the error of a tile doesn't follow "
+      "from theirs. Leave out --reference and have it rendered here (--reference-graph, --reference-set), "
+      "where whole restarts are the samples",
+      file));
+}
+
 uint64_t restartsOf(const image::Picture& picture) {
   const auto found = picture.attributes.find("weir.restarts");
   uint64_t count = 0;
@@ -110,6 +144,8 @@ struct FileReference {
 FileReference readReference(const VerifyOptions& o) {
   FileReference r;
   r.picture = finitePicture(o.reference, o);
+  requireLight(o.reference, r.picture);
+  if (!o.referenceExact) requireIndependentPixels(o.reference, r.picture);
   if (!o.referenceError.empty()) {
     r.error = finitePicture(o.referenceError, o);
     const auto conflicts = image::attributeConflicts(r.error, r.picture);
@@ -205,6 +241,11 @@ Verification verify(const VerifyOptions& o) {
           "form): it is taken from how its pixels scatter, which finds less",
           o.reference));
   }
+  if (o.referenceRestarts != 0 && (o.referenceRestarts < o.restarts / 2 || o.restarts < o.referenceRestarts / 2))
+    warn(
+        fmt::format("{} restarts against {} of the reference: rare bright events that only the larger side has seen "
+                    "look like a bias",
+                    o.restarts, o.referenceRestarts));
   laboratory.open(o.stage, o.device, static_cast<float>(o.width) / static_cast<float>(o.height));
   const Stage& stage = laboratory.stage();
   for (const std::string& warning : stage.scene.warnings) warn(warning);
