@@ -43,14 +43,32 @@ def mean_and_error(values):
     return mean, math.sqrt(math.fsum((v - mean) ** 2 for v in values) / (len(values) * (len(values) - 1)))
 
 
+class Failed(Exception):
+    """What was wrong, and the exit status for it: 2 bad input, 1 failed while running."""
+
+    def __init__(self, text, status):
+        super().__init__(text)
+        self.status = status
+
+
+def write_whole(path, text):
+    """Beside it first, then renamed: a file is there whole or not at all."""
+    with open(path + ".unfinished", "w") as file:
+        file.write(text)
+    os.replace(path + ".unfinished", path)
+
+
 class Weir:
     def __init__(self, binary, words):
         self.binary, self.words = binary, words
 
     def run(self, *words):
-        done = subprocess.run([self.binary, *words], capture_output=True, text=True)
+        try:
+            done = subprocess.run([self.binary, *words], capture_output=True, text=True)
+        except OSError as error:
+            raise Failed("%s: %s" % (self.binary, error.strerror), 2) from error
         if done.returncode != 0:
-            sys.exit("weir " + " ".join(words) + "\n" + done.stderr)
+            raise Failed("weir " + " ".join(words) + "\n" + done.stderr.strip(), done.returncode)
         return done.stdout
 
     def render(self, graph, *words):
@@ -67,6 +85,8 @@ def errors(weir, graph, settings, args, reference, folder, restart):
     weir.render(graph, *common, "--out", "radiance=" + picture)
     weir.render(graph, *common, "--average", str(args.frames), "--out", "radiance=" + mean)
     result = weir.compare(picture, reference), weir.compare(mean, reference)
+    if any(error["relative_bias"] is None for error in result):
+        raise Failed("the reference is black: no error is relative to it", 2)
     os.remove(picture)
     os.remove(mean)
     return result
@@ -143,6 +163,10 @@ def arguments():
     args = parser.parse_args()
     if min(args.restarts, args.frames, args.timed_frames, args.jobs) < 1:
         parser.error("--restarts, --frames, --timed-frames and --jobs must be at least 1")
+    for path in filter(None, (args.json, args.markdown)):  # now, not after an hour of measuring
+        folder = os.path.dirname(path) or "."
+        if os.path.isdir(path) or not os.path.isdir(folder) or not os.access(folder, os.W_OK):
+            parser.error("can't write '%s'" % path)
     return args
 
 
@@ -166,7 +190,11 @@ def main():
         with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
             runs = [[pool.submit(errors, weir, args.graph, settings, args, reference, tempfile.mkdtemp(dir=work), r) for r in range(args.restarts)]
                     for settings, _ in combinations]
-            restarts = [[run.result() for run in of_one] for of_one in runs]
+            try:
+                restarts = [[run.result() for run in of_one] for of_one in runs]
+            except Failed:
+                pool.shutdown(cancel_futures=True)
+                raise
         rows = []
         for (settings, names), of_one in zip(combinations, restarts):
             row = row_of(settings, of_one, times(weir, args.graph, settings, args, work), args)
@@ -178,13 +206,15 @@ def main():
     text = table(rows, args.metric)
     print(text, end="")
     if args.markdown:
-        with open(args.markdown, "w") as file:
-            file.write(text)
+        write_whole(args.markdown, text)
     if args.json:
-        with open(args.json, "w") as file:
-            json.dump({"scene": os.path.basename(args.scene), "words": args.words, "size": args.size, "frames": args.frames,
-                       "restarts": args.restarts, "metric": args.metric, "set": args.set, "rows": rows}, file, indent=1)
+        write_whole(args.json, json.dumps({"scene": os.path.basename(args.scene), "words": args.words, "size": args.size, "frames": args.frames,
+                                           "restarts": args.restarts, "metric": args.metric, "set": args.set, "rows": rows}, indent=1))
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Failed as failure:
+        print("modes: %s" % failure, file=sys.stderr)
+        sys.exit(failure.status)

@@ -70,9 +70,10 @@ def parts(options):
     size = "%dx%d" % (options.size, options.size)
     settings = {"cycles": {**scene, "samples": options.samples, "bounces": options.bounces, "size": size},
                 "weir": {**scene, "graph": os.path.basename(options.graph), "frames": options.frames, "set": options.set, "size": size}}
-    for seed in range(1, options.parts + 1):
+    count = {"cycles": options.cycles_parts, "weir": options.parts}
+    for seed in range(1, max(count.values()) + 1):
         for side in found:
-            if options.only not in (None, side): continue
+            if options.only not in (None, side) or seed > count[side]: continue
             if side == "cycles":
                 def render(out): cycles(options.blender, options.scene, out, samples=options.samples, bounces=options.bounces, size=size,
                                         seed=seed, threads=options.threads)
@@ -107,6 +108,7 @@ def arguments():
     parser.add_argument("--out", required=True, metavar="FOLDER", help="of this comparison's own")
     parser.add_argument("--size", type=int, default=256, help="pixels a side (%(default)s)")
     parser.add_argument("--parts", type=int, default=4, help="of each side, at least 2 (%(default)s)")
+    parser.add_argument("--cycles-parts", type=int, help="of Cycles' side, where it wants more or fewer")
     parser.add_argument("--samples", type=int, default=1024, help="Cycles' samples a pixel and part (%(default)s)")
     parser.add_argument("--frames", type=int, default=1024, help="Weir's frames a part (%(default)s)")
     parser.add_argument("--only", choices=("cycles", "weir"), help="render the parts of this side, compare nothing")
@@ -117,7 +119,8 @@ def arguments():
     parser.add_argument("--blender", default="blender")
     parser.add_argument("--threads", type=int, default=os.cpu_count(), help="Cycles'")
     options = parser.parse_args()
-    if options.parts < 2: parser.error("--parts must be at least 2: the spread between them is the error")
+    if options.cycles_parts is None: options.cycles_parts = options.parts
+    if min(options.parts, options.cycles_parts) < 2: parser.error("--parts must be at least 2: the spread between them is the error")
     if options.size % figures.SIDE: parser.error("--size must be a multiple of %d, the side of a tile" % figures.SIDE)
     if options.set is None: options.set = ["path.maxBounces=%d" % options.bounces]
     return options
@@ -129,7 +132,8 @@ def main():
     found, settings = parts(options)
     if options.only: return 0
     a, b = ([exr.read(path) for path in found[side]] for side in ("weir", "cycles"))
-    result = {"cycles": settings["cycles"], "weir": settings["weir"], "parts": options.parts, **figures.compare(a, b)}
+    result = {"cycles": settings["cycles"], "weir": settings["weir"], "parts": options.parts, "cycles_parts": options.cycles_parts,
+              **figures.compare(a, b)}
     with open(os.path.join(options.out, "figures.json"), "w") as file: file.write(json.dumps(result, indent=2) + "\n")
     print(json.dumps(result, indent=2))
     pictures(options.out, exr.Picture.mean(a), exr.Picture.mean(b))
