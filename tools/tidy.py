@@ -74,7 +74,8 @@ def digest(path):
 
 
 def key(name, words, sources, general):
-    text = [general, " ".join(words).replace(ROOT, "."), name, digest(os.path.join(ROOT, name))]
+    own = os.path.join(ROOT, name.split(os.sep)[0], ".clang-tidy")  # a folder may leave out checks
+    text = [general, digest(own) if os.path.exists(own) else "", " ".join(words).replace(ROOT, "."), name, digest(os.path.join(ROOT, name))]
     text += sorted(f"{os.path.relpath(os.path.realpath(s), ROOT)} {digest(s)}" for s in sources)
     return hashlib.sha256("\n".join(text).encode()).hexdigest()
 
