@@ -123,7 +123,7 @@ Metrics measure(const Picture& test, const Picture& reference, const MetricOptio
   m.biasR = bias[0] / n;
   m.biasG = bias[1] / n;
   m.biasB = bias[2] / n;
-  m.relativeBias = luminanceB != 0.0 ? (luminanceA - luminanceB) / luminanceB : kNaN;
+  m.relativeBias = luminanceB > 0.0 ? (luminanceA - luminanceB) / luminanceB : kNaN;
   m.relMseMedian = percentile(perPixel, 0.5);
   m.relMseTrimmed = trimmedMean(perPixel);
   m.flipMean = m.flipP99 = kNaN;
@@ -165,15 +165,18 @@ TileSummary compareTiles(const Picture& test, const Picture& reference, uint32_t
       *v /= double(tile.pixels);
     }
     const double denominator = std::max(tile.reference, floor);
-    tile.relative = tile.difference == 0.0 ? 0.0 : tile.difference / denominator;
+    tile.relative = tile.difference == 0.0 ? 0.0 : denominator > 0.0 ? tile.difference / denominator : kNaN;
     squares += tile.relative * tile.relative;
     ++tiles;
     summary.worst.push_back(i);
   }
   summary.rmsRelative = std::sqrt(squares / tiles);
-  const auto larger = [&](size_t a, size_t b) {
-    return std::abs(summary.tiles[a].relative) > std::abs(summary.tiles[b].relative);
+  // Undefined ones before all others, as NaN has no place in an order.
+  const auto size = [&](size_t i) {
+    const double relative = std::abs(summary.tiles[i].relative);
+    return std::isnan(relative) ? std::numeric_limits<double>::infinity() : relative;
   };
+  const auto larger = [&](size_t a, size_t b) { return size(a) > size(b); };
   const size_t shown = std::min<size_t>(5, summary.worst.size());
   std::partial_sort(summary.worst.begin(), summary.worst.begin() + static_cast<std::ptrdiff_t>(shown),
                     summary.worst.end(), larger);

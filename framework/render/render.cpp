@@ -33,7 +33,9 @@ void checkOptions(const RenderOptions& o) {
   if (o.restarts == 0) throw InputError("--restarts must be at least 1");
   if (o.average == 0 || o.average > o.frames)
     throw InputError(fmt::format("--average {}: must be 1 … --frames {}", o.average, o.frames));
+  requireFrameNumbers(o.firstFrame, "--frames", o.frames);
   if (!o.errors.empty() && o.restarts < 2) throw InputError("--stderr needs --restarts 2 or more");
+  std::vector<NamedPath> written;
   for (const auto* list : {&o.outputs, &o.errors}) {
     for (const auto& [name, file] : *list) {
       const std::string extension = std::filesystem::path(file).extension().string();
@@ -42,9 +44,13 @@ void checkOptions(const RenderOptions& o) {
             fmt::format("{}={}: the file must end in .exr{}", name, file, list == &o.errors ? "" : " or .png"));
       }
       checkWritable(file);
+      written.emplace_back(fmt::format("{} {}", list == &o.errors ? "--stderr" : "--out", name), file);
     }
   }
   if (!o.statistics.empty()) checkWritable(o.statistics);
+  written.emplace_back("--stats", o.statistics);
+  requireDistinct(written,
+                  {{"the graph", o.graph}, {"--scene", o.stage.scene}, {"--environment", o.stage.environment}});
 }
 
 /// `--exposure`: a --set for every tone map that has the parameter.

@@ -329,7 +329,11 @@ TEST(Verdict, BlackTilesAndBlackPictures) {
   EXPECT_EQ(none.answer, Answer::Undecided);
   ASSERT_FALSE(none.reasons.empty());
   EXPECT_NE(none.reasons[0].find("black"), std::string::npos);
-  EXPECT_EQ(decide(measured.evidence(), black, {}).answer, Answer::Biased);
+  // Light where the reference has none at all: of a black reference nothing is known to be right.
+  const Verdict lit = decide(measured.evidence(), black, {});
+  EXPECT_EQ(lit.answer, Answer::Undecided);
+  EXPECT_EQ(lit.reasons, none.reasons);
+  EXPECT_EQ(lit.enough, 0u);
 }
 
 // A shift between colours that keeps luminance.
@@ -397,6 +401,11 @@ TEST(Verdict, RefusesWhatDoesNotFit) {
   expectInputError([&] { decide(e, exactEvidence(s.exact(), 8, 16), {}); }, {"tiles"});
   expectInputError([&] { decide(exactEvidence(s.exact(), kFine, kCoarse), e, {}); }, {"restarts"});
   expectInputError([&] { EvidenceCollector(8, 20); }, {"20²", "8²"});
+  Picture negative = s.exact();
+  requireNotNegative(exactEvidence(negative, kFine, kCoarse), "r.exr");
+  for (uint32_t k = 0; k < 16; ++k) negative.at(20 + k % 4, 8 + k / 4)[2] = -0.01f;
+  expectInputError([&] { requireNotNegative(exactEvidence(negative, kFine, kCoarse), "r.exr"); },
+                   {"r.exr is negative", "tile of 4² at 20, 8", "in B"});
   Picture error = s.exact();
   error.at(3, 2)[1] = -1.0f;
   expectInputError([&] { pictureEvidence(s.exact(), error, 8, kFine, kCoarse); }, {"3, 2", "-1"});
