@@ -186,12 +186,13 @@ image::Evidence fileEvidence(const VerifyOptions& o, const FileReference& r, con
   }
 }
 
-/// Numbers of restarts that are very unlike: what comes rarely may have been seen by one side alone.
-void warnOfUnlike(uint64_t own, uint64_t reference, const std::function<void(const std::string&)>& warn) {
-  if (2 * reference >= own && 2 * own >= reference) return;
+/// A reference of far fewer restarts: what comes rarely may have been seen by one side alone. Far more are no fault,
+/// a well-sampled reference is what one wants.
+void warnOfFewer(uint64_t own, uint64_t reference, const std::function<void(const std::string&)>& warn) {
+  if (2 * reference >= own) return;
   warn(
       fmt::format("{} restarts against {} of the reference: light that comes rarely may have been seen by one side "
-                  "alone; as many of both are safer",
+                  "alone; as many of it are safer",
                   own, reference));
 }
 
@@ -241,7 +242,7 @@ Verification verify(const VerifyOptions& o) {
     if (bundled) overrides.set.insert(overrides.set.begin(), "path.maxBounces=0");
     referenceGraph = laboratory.compile(v.referenceName, overrides, o.width, o.height);
     requirePicture(referenceGraph, v.referenceName, "radiance");
-    if (o.referenceRestarts > 0) warnOfUnlike(o.restarts, o.referenceRestarts, warn);
+    if (o.referenceRestarts > 0) warnOfFewer(o.restarts, o.referenceRestarts, warn);
   } else {
     v.referenceName = o.reference;
     file = readReference(o);
@@ -250,7 +251,7 @@ Verification verify(const VerifyOptions& o) {
     if (v.kind == ReferenceKind::WithError && restartsOf(file.error) < 2)
       warn(fmt::format("'{}' doesn't say of how many restarts it is; taken as of two", o.referenceError));
     else if (v.kind == ReferenceKind::WithError)
-      warnOfUnlike(o.restarts, restartsOf(file.error), warn);
+      warnOfFewer(o.restarts, restartsOf(file.error), warn);
     if (v.kind == ReferenceKind::Scatter)
       warn(fmt::format(
           "nothing is known of the error of '{}' (--reference-stderr FILE, or --reference-exact for a closed "
@@ -325,6 +326,13 @@ Verification verify(const VerifyOptions& o) {
     v.verdict = image::decide(measured.evidence(), reference, measured.nonFinite(), options);
     if (v.verdict.answer != image::Answer::Undecided || v.look == v.looks) break;
   }
+  // Of a file nobody knows whether events that the graph's restarts lack are behind it.
+  if (v.verdict.answer == image::Answer::Biased && v.kind == ReferenceKind::WithError &&
+      2 * v.verdict.restarts < restartsOf(file.error))
+    warn(fmt::format(
+        "'{}' is of {} restarts, more than twice the {} here: light that comes too rarely for these looks like "
+        "a bias; --restarts {} tells the two apart",
+        o.reference, restartsOf(file.error), v.verdict.restarts, restartsOf(file.error)));
   if (o.device.validation) laboratory.requireNoValidationMessages();
   if (!o.picture.empty()) writePicture(o, v);
   if (!o.json.empty()) writeTextFile(o.json, verificationJson(v, o));

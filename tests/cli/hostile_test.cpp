@@ -118,6 +118,20 @@ TEST_F(Hostile, UnlikeNumbersOfRestartsAreSaid) {
   EXPECT_TRUE(has(j.at("warnings").at(0), "40 restarts against 16"));
 }
 
+// A verdict against a file of many more restarts may be about light that these have not seen.
+TEST_F(Hostile, ABiasAgainstAFileOfManyMoreRestartsIsSaidWithCare) {
+  image::Picture picture = constant(16, 100.0f), error = constant(16, 0.01f);
+  error.attributes["weir.restarts"] = "64";
+  const std::string files =
+      "--reference " + input("r.exr", picture) + " --reference-stderr " + input("e.exr", error) + " --frames 1 ";
+  const Ran few = weir(verifyStart() + files + "--restarts 16");
+  EXPECT_EQ(few.status, 1) << few.out << few.err;
+  EXPECT_TRUE(has(few.err, "--restarts 64 tells the two apart")) << few.err;
+  const Ran many = weir(verifyStart() + files + "--restarts 32");
+  EXPECT_EQ(many.status, 1) << many.out;
+  EXPECT_FALSE(has(many.err, "tells the two apart")) << many.err;
+}
+
 TEST_F(Hostile, NothingToCompare) {
   const std::string one = input("one.exr", constant(16, 1.0f)), nothing = input("nan.exr", constant(16, NAN));
   expectRefused("compare " + one + " " + nothing, "none of the 256 pixels is finite in both");
