@@ -56,9 +56,10 @@ Comparison compare(const Options& options) {
   const image::Picture* maskOrAll = options.mask.empty() ? nullptr : &mask;
   result.hdr = radiance;
   result.metrics = image::measure(picture, reference, {.mask = maskOrAll, .hdr = result.hdr, .flip = !options.noFlip});
-  if (result.metrics.pixels == 0)
-    throw InputError(fmt::format("'{}' and '{}' have no pixel that is finite in both: nothing can be compared",
-                                 options.picture, options.reference));
+  if (result.metrics.pixels == 0) {
+    throw InputError(fmt::format("nothing to compare: none of the {} pixels is finite in both '{}' and '{}'",
+                                 result.metrics.nonFinite, options.picture, options.reference));
+  }
   if (options.tiles > 0) result.tiles = image::compareTiles(picture, reference, options.tiles, maskOrAll);
   return result;
 }
@@ -104,9 +105,10 @@ void printJson(const Options& options, const Comparison& c) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
-/// There is none against a reference that is black.
-std::string percent(double value) {
-  return std::isfinite(value) ? fmt::format("{:>+12.4f} %", 100 * value) : fmt::format("{:>14}", "undefined");
+/// Of a figure that is relative to a reference which may be black, or negative.
+std::string percent(double value, int width, const char* sign) {
+  if (!std::isfinite(value)) return fmt::format("{:>{}}", "undefined", width);
+  return fmt::format(fmt::runtime(fmt::format("{{:>{}{}.4f}} %", sign, width)), 100 * value);
 }
 
 void printTable(const Options& options, const Comparison& c) {
@@ -127,15 +129,15 @@ void printTable(const Options& options, const Comparison& c) {
     figure("  p99", m.flipP99);
   }
   row("bias R G B", fmt::format("{:>12.4g} {:>12.4g} {:>12.4g}", m.biasR, m.biasG, m.biasB));
-  row("relative bias", percent(m.relativeBias));
+  row("relative bias", percent(m.relativeBias, 12, "+"));
   if (options.tiles == 0) return;
   const image::TileSummary& s = c.tiles;
-  fmt::print("\n{} tiles of {}²: relative difference RMS{}, largest{}; the worst:\n", s.tiles.size(), s.grid.side,
-             percent(s.rmsRelative), percent(s.maxRelative));
+  fmt::print("\n{} tiles of {}²: relative difference RMS {}, largest {}; the worst:\n", s.tiles.size(), s.grid.side,
+             percent(s.rmsRelative, 1, ""), percent(s.maxRelative, 1, ""));
   fmt::print("{:>7}{:>7}{:>14}{:>14}{:>12}\n", "x", "y", "reference", "difference", "relative");
   for (const size_t i : s.worst) {
     const image::TileDifference& t = s.tiles[i];
-    fmt::print("{:>7}{:>7}{:>14.6g}{:>14.6g}{}\n", t.x, t.y, t.reference, t.difference, percent(t.relative));
+    fmt::print("{:>7}{:>7}{:>14.6g}{:>14.6g}{}\n", t.x, t.y, t.reference, t.difference, percent(t.relative, 10, "+"));
   }
 }
 
@@ -144,6 +146,7 @@ void printTable(const Options& options, const Comparison& c) {
 void addCompareCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("compare", "how far a picture is from a reference");
   const auto options = std::make_shared<Options>();
+  command->footer("Exit status: 0 compared, whatever the figures are; 1 failed while running; 2 bad input.");
   command->add_option("picture", options->picture, "EXR (radiance) or PNG (display values)")->required();
   command->add_option("reference", options->reference, "of the same kind and size")->required();
   command->add_option("--mask", options->mask, "counts pixels where the largest of its R, G, B is above 0.5");
@@ -152,7 +155,6 @@ void addCompareCommand(CLI::App& app) {
   command->add_flag("--json", options->json, "everything as JSON, with every tile");
   command->add_flag("--force", options->force, "compares pictures of different scenes, cameras or lights too");
   command->add_flag("--no-flip", options->noFlip, "leaves FLIP out, which takes most of the time");
-  command->footer("Exit status: 0 compared, however far apart; 2 bad input.");
   command->callback([options] {
     const Comparison comparison = compare(*options);
     options->json ? printJson(*options, comparison) : printTable(*options, comparison);

@@ -36,6 +36,11 @@ const char* kindWords(ReferenceKind kind) {
   return ", its error taken from how its pixels scatter";
 }
 
+/// "known to …" of a scale where nothing is lit has no figure.
+std::string knownTo(double v) {
+  return std::isfinite(v) ? fmt::format("{:.3g} %", 100 * v) : std::string("nothing");
+}
+
 std::string percent(double v) {
   return std::isfinite(v) ? fmt::format("{:+.4g} %", 100 * v) : std::string("unknown");
 }
@@ -50,9 +55,9 @@ void print(const render::Verification& v, const render::VerifyOptions& o) {
   fmt::print("whole picture: bias {}, between {} and {}\n", percent(d.whole.relative), percent(d.low), percent(d.high));
   for (const image::Scale* s : {&d.coarse, &d.fine}) {
     const image::Comparison& w = s->tiles[s->worst];
-    fmt::print("tiles of {}²: worst |t| {:.2f} at {}, {} ({} in {}), {:.2f} alarms; half of them known to {:.3g} %\n",
+    fmt::print("tiles of {}²: worst |t| {:.2f} at {}, {} ({} in {}), {:.2f} alarms; half of them known to {}\n",
                s->grid.side, std::abs(w.t), s->grid.left(s->worst), s->grid.top(s->worst), percent(w.relative),
-               s->colours[s->worst], image::criticalT(w.freedom, s->level), 100 * s->resolution);
+               s->colours[s->worst], image::criticalT(w.freedom, s->level), knownTo(s->resolution));
   }
   switch (d.answer) {
     case image::Answer::Unbiased:
@@ -112,6 +117,10 @@ void addReferenceOptions(CLI::App& command, render::VerifyOptions& o) {
 
 void addVerifyCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("verify", "Is this graph's estimator unbiased on this scene?");
+  command->footer(
+      "Exit status: 0 unbiased; 1 biased, or failed while running (then a message on stderr begins with 'weir:'); 2 "
+      "bad "
+      "input; 3 undecided.");
   auto words = std::make_shared<Words>();
   auto& o = words->options;
   command->add_option("graph", o.graph, "Graph, a JSON file")->required();
@@ -137,18 +146,17 @@ void addVerifyCommand(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--alpha", o.verdict.alpha,
-                   "Chance that an unbiased graph is called biased (docs/verify.md: rare bright events aside)")
+                   "Chance that an unbiased graph is called biased, save for light that hardly any restart has seen")
       ->capture_default_str();
   command->add_option("--tolerance", o.verdict.tolerance, "Unbiased means: the whole picture to this, relative")
       ->capture_default_str();
   command->add_option("--tile-tolerance", o.verdict.tileTolerance, "And half of the coarse tiles to this")
       ->capture_default_str();
-  command->add_option("--negligible", o.verdict.negligible, "Relative differences up to this are rounding")
+  command->add_option("--negligible", o.verdict.negligible, "Relative differences up to this are rounding; 0 … 0.1")
       ->capture_default_str();
   command->add_option("--out", o.picture, ".png: map of where and how much; .exr: mean minus reference");
   command->add_option("--json", o.json, "File for the raw numbers of every tile");
   addDeviceOptions(*command, o.device.device, o.device.trace, o.device.validation);
   addPluginPath(*command, o.pluginPaths);
-  command->footer("Exit status: 0 unbiased, 1 biased (or failed while running), 2 bad input, 3 undecided: run longer.");
   command->callback([words] { run(*words); });
 }

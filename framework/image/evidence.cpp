@@ -102,13 +102,13 @@ void ShapeMoments::add(double value, uint64_t countWithIt) {
 Estimate estimate(const ShapeMoments& m, uint64_t count) {
   const double n = double(count);
   if (count < 2 || !std::isfinite(m.second)) return {m.mean, kInfinity, 1.0, 0.0};
-  Estimate e{m.mean, m.second / (n * (n - 1)), n - 1, 0.0};
+  Estimate e{m.mean, m.second / (n * (n - 1)), n - 1, 0.0, 0.0, count};
   if (count < 4 || !(m.second > 0)) return e;
   const double variance = m.second / (n - 1);
   e.cumulant = m.third * n / ((n - 1) * (n - 2)) / (n * n);  // Fisher's k3 of the values, over n²
   const double k4 = n * ((n + 1) * m.fourth - 3 * (n - 1) / n * m.second * m.second) / ((n - 1) * (n - 2) * (n - 3));
-  const double excess = std::max(0.0, k4 / (variance * variance));
-  e.freedom = std::max(1.0, 2.0 / (2.0 / (n - 1) + excess / n));
+  e.excess = std::max(0.0, k4 / (variance * variance));
+  e.freedom = std::max(1.0, 2.0 / (2.0 / (n - 1) + e.excess / n));
   return e;
 }
 
@@ -123,6 +123,24 @@ NonFinite findNonFinite(const Picture& picture) {
     }
   }
   return result;
+}
+
+void requireNotNegative(const Evidence& reference, const std::string& name) {
+  const auto check = [&](const ColourEstimates& e, const std::string& where) {
+    constexpr char kNames[] = {'R', 'G', 'B', 'Y'};
+    for (size_t c = 0; c < 4; ++c) {
+      if (!(e[c].mean < 0)) continue;
+      throw InputError(fmt::format("the reference {} is negative: its mean{} is {:.6g} in {}; light is 0 or more", name,
+                                   where, e[c].mean, kNames[c]));
+    }
+  };
+  check(reference.whole, "");
+  const auto checkTiles = [&](const TileGrid& grid, const std::vector<ColourEstimates>& tiles) {
+    for (size_t i = 0; i < tiles.size(); ++i)
+      check(tiles[i], fmt::format(" over the tile of {}² at {}, {}", grid.side, grid.left(i), grid.top(i)));
+  };
+  checkTiles(reference.coarse, reference.coarseTiles);
+  checkTiles(reference.fine, reference.fineTiles);
 }
 
 EvidenceCollector::EvidenceCollector(uint32_t fineSide, uint32_t coarseSide) : pixels_(fineSide) {
@@ -197,6 +215,7 @@ Evidence pictureEvidence(const Picture& picture, const Picture& error, uint64_t 
   return fromScales(fine, coarse, s, [&](const Sums& t, size_t c) {
     Estimate e{t.sum[0][c] / t.pixels, t.sum[1][c] / (t.pixels * t.pixels)};
     if (t.sum[2][c] > 0) e.freedom = each * t.sum[1][c] * t.sum[1][c] / t.sum[2][c];
+    e.count = restarts;
     return e;
   });
 }

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace weir::image {
@@ -30,6 +31,8 @@ struct Estimate {
   /// Degrees of freedom of that variance: how well it is known itself. Infinite where it is given, or none.
   double freedom = std::numeric_limits<double>::infinity();
   double cumulant = 0;  ///< third cumulant of the mean: its skewness times variance^1.5
+  double excess = 0;    ///< excess kurtosis of a restart, 0 at least, where it is known
+  uint64_t count = 0;   ///< restarts behind the mean; 0: none, or unknown
 };
 
 /// Of a mean over `count` independent values. The variance of a sample of heavy tails is itself known badly:
@@ -55,6 +58,10 @@ struct NonFinite {
   uint64_t restart = 0;  ///< of the first one
 };
 NonFinite findNonFinite(const Picture& picture);
+
+/// Light is not negative: a reference whose mean is below 0, of a tile or of the whole picture in any colour, is an
+/// InputError that says where.
+void requireNotNegative(const Evidence& reference, const std::string& name);
 
 /// Collects restarts: one picture each, which may itself be the mean of its frames. Memory: 64 bytes a pixel.
 class EvidenceCollector {
@@ -86,14 +93,15 @@ Evidence exactEvidence(const Picture& picture, uint32_t fineSide, uint32_t coars
 /// A mean over `restarts` independent pictures, of which only it and its pixels' standard error are left. Pixels are
 /// taken as independent (a brute-force reference's are; a picture with spatial reuse is no reference), colours as fully
 /// correlated, which overstates the error of luminance. Freedom of a tile's variance by Satterthwaite 1946 from
-/// restarts - 1 for each pixel. Throws InputError for sizes that differ, or an error that is negative or not finite.
+/// restarts - 1 for each pixel. A pixel offset that a whole frame shares (jitter) makes all of its pixels dependent:
+/// not for such pictures. Throws InputError for sizes that differ, or an error that is negative or not finite.
 Evidence pictureEvidence(const Picture& picture, const Picture& error, uint64_t restarts, uint32_t fineSide,
                          uint32_t coarseSide);
 
 /// A picture of unknown error: how its pixels scatter about `other` (the mean of what is tested) bounds it. Within each
 /// tile the variance of picture - other, divided by the number of pixels, is taken as the variance of the tile's mean.
 /// That counts the other's noise a second time, and any bias that changes from pixel to pixel as noise: too large
-/// rather than too small, as long as the picture's pixels are independent.
+/// rather than too small, as long as the picture's pixels are independent, which they aren't under a shared offset.
 Evidence scatterEvidence(const Picture& picture, const Picture& other, uint32_t fineSide, uint32_t coarseSide);
 
 }  // namespace weir::image

@@ -171,13 +171,12 @@ TileSummary compareTiles(const Picture& test, const Picture& reference, uint32_t
     summary.worst.push_back(i);
   }
   summary.rmsRelative = std::sqrt(squares / tiles);
-  const auto larger = [&](size_t a, size_t b) {
-    const auto size = [&](size_t i) {  // what has no figure comes last
-      const double relative = summary.tiles[i].relative;
-      return std::isnan(relative) ? -1.0 : std::abs(relative);
-    };
-    return size(a) > size(b);
+  // Undefined ones before all others, as NaN has no place in an order.
+  const auto size = [&](size_t i) {
+    const double relative = std::abs(summary.tiles[i].relative);
+    return std::isnan(relative) ? std::numeric_limits<double>::infinity() : relative;
   };
+  const auto larger = [&](size_t a, size_t b) { return size(a) > size(b); };
   const size_t shown = std::min<size_t>(5, summary.worst.size());
   std::partial_sort(summary.worst.begin(), summary.worst.begin() + static_cast<std::ptrdiff_t>(shown),
                     summary.worst.end(), larger);

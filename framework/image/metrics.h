@@ -29,10 +29,9 @@ struct Metrics {
   double flipMean = 0;                     ///< mean over pixels of FLIP, in [0,1]
   double flipP99 = 0;                      ///< 99th percentile over pixels of FLIP, by nearest rank
   double biasR = 0, biasG = 0, biasB = 0;  ///< mean of a - b per channel, signed, in the pictures' unit
-  double relativeBias = 0;                 ///< (mean luminance of a - that of b) / that of b; NaN on a reference that
-                                           ///< is black or below
-  uint64_t nonFinite = 0;  ///< pixels inside the mask where a or b has a NaN or an infinity: left out of all else
-  uint64_t pixels = 0;     ///< pixels that were counted
+  double relativeBias = 0;  ///< (mean luminance of a - that of b) / that of b; NaN unless that is above 0
+  uint64_t nonFinite = 0;   ///< pixels inside the mask where a or b has a NaN or an infinity: left out of all else
+  uint64_t pixels = 0;      ///< pixels that were counted
 };
 
 struct MetricOptions {
@@ -53,16 +52,17 @@ struct TileDifference {
   double differenceR = 0, differenceG = 0, differenceB = 0;  ///< mean of a - b
   double difference = 0;                                     ///< of luminance
   double reference = 0;                                      ///< mean luminance of b
-  double relative = 0;  ///< difference / max(reference, 1 % of the whole picture's mean reference luminance); NaN where
-                        ///< that is not above 0
+  /// difference / max(reference, 1 % of the whole picture's mean reference luminance); NaN where there is a difference
+  /// and neither is above 0.
+  double relative = 0;
 };
 
 struct TileSummary {
   TileGrid grid;
   std::vector<TileDifference> tiles;  ///< row by row
   std::vector<size_t> worst;          ///< up to 5 tiles with the largest |relative|, worst first
-  double rmsRelative = 0;             ///< sqrt of the mean over counted tiles of relative²
-  double maxRelative = 0;             ///< largest |relative|
+  double rmsRelative = 0;             ///< sqrt of the mean over counted tiles of relative²; NaN if one is
+  double maxRelative = 0;             ///< largest |relative|; NaN if one is, which counts as the worst
 };
 
 /// Per-tile mean differences. The floor under a tile's reference keeps tiles that are as good as black from

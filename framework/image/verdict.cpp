@@ -26,6 +26,24 @@ double welchFreedom(const Estimate& a, const Estimate& b) {
   return parts > 0 ? sum * sum / parts : kInfinity;
 }
 
+/// Events of such a number are seen by every sample of that size, and their spread with them.
+constexpr double kSeenWell = 30;
+
+/// Rare events make an excess kurtosis of at least one over how many of them there are in a restart (compound Poisson).
+/// Where the side with fewer restarts can expect only few of those that the other one has seen, its own variance may
+/// lack them. The null hypothesis then is that both sides vary alike, and each gets its variance from the other: n and
+/// n' restarts of equal variances s² and s'² have s²/n' + s'²/n, which is that of a pooled t test. For n = n' and for
+/// light that the smaller side has seen, nothing changes, and never does it alarm more.
+void spreadRareEvents(Estimate& a, Estimate& b) {
+  if (a.count == 0 || b.count == 0 || a.count == b.count) return;
+  const Estimate &many = a.count > b.count ? a : b, &few = a.count > b.count ? b : a;
+  if (double(few.count) >= kSeenWell * many.excess) return;
+  const double ratio = double(a.count) / double(b.count), fromA = a.variance * ratio, fromB = b.variance / ratio;
+  if (!(fromA + fromB > a.variance + b.variance)) return;
+  a.variance = fromA;
+  b.variance = fromB;
+}
+
 /// Hall 1992, "On the Removal of Skewness by Transformation", eq. 3 (monotone): t whose first-order dependence on the
 /// skewness of the data is gone. `skew`: third cumulant of the mean over variance^1.5.
 double withoutSkewness(double t, double skew) {
@@ -115,22 +133,22 @@ double growth(double half, double standardErrors, double tolerance) {
 }
 
 std::string percent(double v) {
-  return std::isfinite(v) ? fmt::format("{:+.4g} %", 100 * v) : "all of it (the reference is black)";
+  return std::isfinite(v) ? fmt::format("{:+.4g} %", 100 * v) : std::string("more than the reference, which is black,");
 }
 
 void explainUndecided(Verdict& v, const Evidence& measured, const Evidence& reference, const VerdictOptions& o) {
   const double t = criticalT(v.whole.freedom, v.wholeLevel), half = 0.5 * (v.high - v.low);
   double times = 1.0;
+  if (!(v.whole.reference > 0)) {
+    v.reasons.emplace_back("the reference is black: there is nothing to be right or wrong about");
+    return;
+  }
   if (v.restarts < o.fewest || (v.referenceRestarts > 0 && v.referenceRestarts < o.fewest)) {
     const bool own = v.restarts < o.fewest;
     const uint64_t has = own ? v.restarts : v.referenceRestarts;
     v.reasons.push_back(fmt::format("{} restarts{} are too few for a verdict: at least {}", has,
                                     own ? "" : " of the reference", o.fewest));
     times = double(o.fewest) / double(has);
-  }
-  if (!(v.whole.reference > 0)) {
-    v.reasons.emplace_back("the reference is black: there is nothing to be right or wrong about");
-    return;
   }
   if (v.within > o.tolerance) {
     v.reasons.push_back(fmt::format("the whole picture's bias is known only to be between {} and {}; asked is {:.4g} %",
@@ -184,7 +202,9 @@ double criticalT(double freedom, double level) {
   return at->second;
 }
 
-Comparison compare(const Estimate& measured, const Estimate& reference, double negligible) {
+Comparison compare(const Estimate& ofMeasured, const Estimate& ofReference, double negligible) {
+  Estimate measured = ofMeasured, reference = ofReference;
+  spreadRareEvents(measured, reference);
   Comparison c{measured.mean, reference.mean};
   const double difference = c.mean - c.reference, variance = measured.variance + reference.variance;
   c.relative = c.reference != 0 ? difference / std::abs(c.reference) : (difference == 0 ? 0.0 : kInfinity);
@@ -233,6 +253,10 @@ Verdict decide(const Evidence& measured, const Evidence& reference, const NonFin
     v.answer = Answer::Biased;
     v.reasons.push_back(fmt::format("{} pixels are not finite; the first is {}, {} of restart {}", bad.pixels, bad.x,
                                     bad.y, bad.restart));
+    return v;
+  }
+  if (!(v.whole.reference > 0)) {
+    explainUndecided(v, measured, reference, o);
     return v;
   }
   const bool many = v.restarts >= o.fewest && (v.referenceRestarts == 0 || v.referenceRestarts >= o.fewest);

@@ -6,9 +6,11 @@
 //   - the colours of the picture and of its coarse tiles (a quarter): power against biases of a region;
 //   - the colours of the fine tiles (a quarter): where.
 // Within a question the bound is Šidák's over all of its comparisons, between questions the shares add up (Bonferroni),
-// so that whatever the dependence, an unbiased estimator is called biased with probability alpha at most. That leans on
-// both sides having seen what their means are made of: light in events so rare that one side has had none of them is a
-// difference like any other (docs/verify.md, "What it can't see").
+// so that whatever the dependence between comparisons, an unbiased estimator is called biased with probability alpha at
+// most, as far as a t test with the variances' own uncertainty and skewness taken in holds alpha for one comparison.
+// It does for light that both sides have seen often. Light that comes in huge events, so rare that one side has seen
+// none or next to none of them, is beyond what any sample can tell from bias; equal numbers of restarts keep such cases
+// symmetric, and spreadRareEvents (verdict.cpp) counts them where the numbers differ.
 #pragma once
 
 #include <weir/image/evidence.h>
@@ -19,7 +21,7 @@
 namespace weir::image {
 
 struct VerdictOptions {
-  double alpha = 0.01;       ///< chance of a false alarm over all looks and all comparisons
+  double alpha = 0.01;       ///< chance of a false alarm over all looks and all comparisons (see above for what limits)
   double tolerance = 0.005;  ///< relative; "unbiased" says that the whole picture is right to at least this
   /// Relative; "unbiased" says of coarse tiles that half of those that vary are known to at least this.
   double tileTolerance = 0.05;
@@ -30,7 +32,8 @@ struct VerdictOptions {
   int looks = 1;
 };
 
-/// A tile's mean against the reference's: Welch's t (Welch 1947) with Hall's removal of skewness (Hall 1992).
+/// A tile's mean against the reference's: Welch's t (Welch 1947) with Hall's removal of skewness (Hall 1992). Between
+/// unlike numbers of restarts of which the fewer may have missed rare events, the pooled variance if it is larger.
 struct Comparison {
   double mean = 0, reference = 0;
   double standardError = 0;  ///< of the difference
@@ -79,7 +82,7 @@ struct Verdict {
 };
 
 /// `measured` must come from restarts. Sizes and tile sides must agree (InputError). `bad`: non-finite pixels that the
-/// restarts had, which is biased whatever else.
+/// restarts had, which is biased whatever else. A black reference is undecided.
 Verdict decide(const Evidence& measured, const Evidence& reference, const NonFinite& bad,
                const VerdictOptions& options = {});
 

@@ -26,7 +26,6 @@ double secondsSince(Clock::time_point start) {
 }
 
 void checkOptions(const RenderOptions& o) {
-  checkFrames(o.firstFrame, o.frames);
   if (o.width == 0 || o.height == 0 || o.width > 16384 || o.height > 16384) {
     throw InputError(fmt::format("--size {}x{}: each side must be 1 … 16384", o.width, o.height));
   }
@@ -34,7 +33,9 @@ void checkOptions(const RenderOptions& o) {
   if (o.restarts == 0) throw InputError("--restarts must be at least 1");
   if (o.average == 0 || o.average > o.frames)
     throw InputError(fmt::format("--average {}: must be 1 … --frames {}", o.average, o.frames));
+  requireFrameNumbers(o.firstFrame, "--frames", o.frames);
   if (!o.errors.empty() && o.restarts < 2) throw InputError("--stderr needs --restarts 2 or more");
+  std::vector<NamedPath> written;
   for (const auto* list : {&o.outputs, &o.errors}) {
     for (const auto& [name, file] : *list) {
       const std::string extension = std::filesystem::path(file).extension().string();
@@ -43,13 +44,13 @@ void checkOptions(const RenderOptions& o) {
             fmt::format("{}={}: the file must end in .exr{}", name, file, list == &o.errors ? "" : " or .png"));
       }
       checkWritable(file);
+      written.emplace_back(fmt::format("{} {}", list == &o.errors ? "--stderr" : "--out", name), file);
     }
   }
   if (!o.statistics.empty()) checkWritable(o.statistics);
-  std::vector<NamedPath> files{{"--stats", o.statistics}};
-  for (const auto& [name, file] : o.outputs) files.emplace_back("--out " + name, file);
-  for (const auto& [name, file] : o.errors) files.emplace_back("--stderr " + name, file);
-  checkDistinct(files, {{"the graph", o.graph}, {"--scene", o.stage.scene}, {"--environment", o.stage.environment}});
+  written.emplace_back("--stats", o.statistics);
+  requireDistinct(written,
+                  {{"the graph", o.graph}, {"--scene", o.stage.scene}, {"--environment", o.stage.environment}});
 }
 
 /// `--exposure`: a --set for every tone map that has the parameter.
@@ -144,11 +145,6 @@ uint64_t peakHostBytes() {
 }
 
 }  // namespace
-
-void checkFrames(uint32_t first, uint32_t frames) {
-  if (uint64_t{first} + frames > uint64_t{1} << 32)
-    throw InputError(fmt::format("--first-frame {} and --frames {}: frame numbers end at {}", first, frames, ~0u));
-}
 
 uint32_t restartSeed(uint32_t seed, uint32_t restart) {
   if (restart == 0) return seed;

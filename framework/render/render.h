@@ -38,9 +38,6 @@ struct RenderOptions {
   std::function<void(const std::string&)> warn;
 };
 
-/// InputError when frame numbers would not fit into 32 bits.
-void checkFrames(uint32_t first, uint32_t frames);
-
 /// Seed of a restart: independent of its neighbours', restart 0 keeps the given one.
 uint32_t restartSeed(uint32_t seed, uint32_t restart);
 

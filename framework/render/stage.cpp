@@ -144,6 +144,12 @@ execute::FrameInput Player::frameAt(double seconds, uint32_t number, uint32_t se
   return input;
 }
 
+void requireFrameNumbers(uint32_t first, const char* option, uint32_t count) {
+  if (uint64_t{first} + count <= uint64_t{1} << 32) return;
+  throw InputError(
+      fmt::format("--first-frame {} with {} {}: frames are numbered up to {}", first, option, count, UINT32_MAX));
+}
+
 std::string animationLabel(const Stage& stage, uint64_t first, uint64_t last) {
   if (!stage.playback) return "";
   const scene::Clip& clip = stage.scene.clips[stage.playback->clip];

@@ -66,6 +66,9 @@ class Player {
   scene::SceneState state_;
 };
 
+/// InputError when the numbers of `count` frames from `first` on don't fit into 32 bits. `option`: what asks for them.
+void requireFrameNumbers(uint32_t first, const char* option, uint32_t count);
+
 /// What tells pictures of different moments apart, such as "Walk at 0.5 s"; empty without playback. `first` and `last`
 /// are the numbers of the frames that a picture shows.
 std::string animationLabel(const Stage& stage, uint64_t first, uint64_t last);

@@ -10,7 +10,6 @@
 #include <bit>
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 
 namespace weir::render {
@@ -27,6 +26,7 @@ void checkOptions(const VerifyOptions& o) {
   if (o.width == 0 || o.height == 0 || o.width > 16384 || o.height > 16384)
     throw InputError(fmt::format("--size {}x{}: each side must be 1 … 16384", o.width, o.height));
   if (o.frames == 0) throw InputError("--frames must be at least 1");
+  requireFrameNumbers(o.firstFrame, "--frames", o.frames);
   if (o.restarts < 2) throw InputError(fmt::format("--restarts {}: must be at least 2", o.restarts));
   if (o.mostRestarts != 0 && o.mostRestarts < o.restarts)
     throw InputError(fmt::format("--max-restarts {}: must be at least --restarts {}", o.mostRestarts, o.restarts));
@@ -39,15 +39,16 @@ void checkOptions(const VerifyOptions& o) {
     throw InputError(
         fmt::format("--tolerance {}: must be above 0, at most 1 (relative: 0.005 is half a percent)", v.tolerance));
   if (!(v.tileTolerance > 0.0 && v.tileTolerance <= 100.0))
-    throw InputError(fmt::format("--tile-tolerance {}: must be above 0, at most 100", v.tileTolerance));
+    throw InputError(fmt::format("--tile-tolerance {}: must be above 0, at most 100 (relative: 0.05 is five percent)",
+                                 v.tileTolerance));
   if (!(v.negligible >= 0.0 && v.negligible <= 0.1))
     throw InputError(fmt::format("--negligible {}: must be 0 … 0.1", v.negligible));
-  checkFrames(o.firstFrame, o.frames);
   if (o.reference.empty()) {
     if (!o.referenceError.empty()) throw InputError("--reference-stderr needs --reference");
     if (o.referenceExact) throw InputError("--reference-exact needs --reference");
     if (o.referenceRestarts == 1) throw InputError("--reference-restarts 1: must be at least 2");
     if (o.referenceFrames == 0) throw InputError("--reference-frames must be at least 1");
+    if (!o.stage.animate) requireFrameNumbers(o.firstFrame, "--reference-frames", o.referenceFrames);
   } else {
     if (!o.referenceGraph.empty()) throw InputError("--reference and --reference-graph: only one of them");
     if (!o.referenceOverrides.set.empty()) throw InputError("--reference-set needs a reference that is rendered here");
@@ -61,12 +62,12 @@ void checkOptions(const VerifyOptions& o) {
     checkWritable(o.picture);
   }
   if (!o.json.empty()) checkWritable(o.json);
-  checkDistinct({{"--out", o.picture}, {"--json", o.json}}, {{"the graph", o.graph},
-                                                             {"--scene", o.stage.scene},
-                                                             {"--environment", o.stage.environment},
-                                                             {"--reference", o.reference},
-                                                             {"--reference-stderr", o.referenceError},
-                                                             {"--reference-graph", o.referenceGraph}});
+  requireDistinct({{"--out", o.picture}, {"--json", o.json}}, {{"the graph", o.graph},
+                                                               {"--scene", o.stage.scene},
+                                                               {"--environment", o.stage.environment},
+                                                               {"--reference", o.reference},
+                                                               {"--reference-stderr", o.referenceError},
+                                                               {"--reference-graph", o.referenceGraph}});
 }
 
 void requirePicture(const graph::CompiledGraph& graph, const std::string& file, const std::string& output) {
@@ -95,29 +96,6 @@ image::Picture finitePicture(const std::string& file, const VerifyOptions& o) {
   return picture;
 }
 
-/// A mean radiance below 0 is nothing that light can be.
-void requireLight(const std::string& file, const image::Picture& picture) {
-  double sums[3] = {};
-  for (size_t i = 0; i < picture.rgba.size(); ++i) {
-    if (i % 4 < 3) sums[i % 4] += picture.rgba[i];
-  }
-  for (const double sum : sums) {
-    if (sum < 0.0) throw InputError(fmt::format("'{}' is no picture of light: its mean is below 0", file));
-  }
-}
-
-/// Errors of tiles are put together from those of pixels, as if these were independent. Where all pixels of a frame
-/// share a place in the pixel, they aren't.
-void requireIndependentPixels(const std::string& file, const image::Picture& picture) {
-  const auto params = picture.attributes.find("weir.params");
-  if (params == picture.attributes.end() || params->second.find(".jitter=true") == std::string::npos) return;
-  throw InputError(fmt::format(
-      "'{}' was rendered with jitter, which all pixels of a frame share: the error of a tile doesn't follow "
-      "from theirs. Leave out --reference and have it rendered here (--reference-graph, --reference-set), "
-      "where whole restarts are the samples",
-      file));
-}
-
 uint64_t restartsOf(const image::Picture& picture) {
   const auto found = picture.attributes.find("weir.restarts");
   uint64_t count = 0;
@@ -141,13 +119,37 @@ struct FileReference {
   ReferenceKind kind = ReferenceKind::Exact;
 };
 
+/// The pass that moved all pixels of a frame by one offset, if the header tells of one. Numbers of pixels that moved
+/// together are no independent samples, which is what the error of a picture from a file is made of.
+std::string jitteringPass(const image::Picture& picture) {
+  const auto found = picture.attributes.find("weir.params");
+  if (found == picture.attributes.end()) return "";
+  constexpr std::string_view kSet = ".jitter=true ";  // every parameter ends in a space
+  const std::string& params = found->second;
+  const size_t at = params.find(kSet);
+  if (at == std::string::npos) return "";
+  const size_t before = params.rfind(' ', at);
+  const size_t start = before == std::string::npos ? 0 : before + 1;
+  return params.substr(start, at - start);
+}
+
+void requireStillPixels(const std::string& file, const image::Picture& picture) {
+  const std::string pass = jitteringPass(picture);
+  if (pass.empty()) return;
+  throw InputError(
+      fmt::format("'{}' was rendered with {}.jitter=true: all pixels of a frame share its offset, so that their errors "
+                  "add up and can't be told from the file. Leave --reference out and have the reference rendered here, "
+                  "with --reference-set {}.jitter=true, where whole restarts are the samples",
+                  file, pass, pass));
+}
+
 FileReference readReference(const VerifyOptions& o) {
   FileReference r;
   r.picture = finitePicture(o.reference, o);
-  requireLight(o.reference, r.picture);
-  if (!o.referenceExact) requireIndependentPixels(o.reference, r.picture);
+  if (!o.referenceExact) requireStillPixels(o.reference, r.picture);
   if (!o.referenceError.empty()) {
     r.error = finitePicture(o.referenceError, o);
+    requireStillPixels(o.referenceError, r.error);
     const auto conflicts = image::attributeConflicts(r.error, r.picture);
     if (!conflicts.empty())
       throw InputError(fmt::format("'{}' is no standard error of '{}':\n  {}", o.referenceError, o.reference,
@@ -184,6 +186,16 @@ image::Evidence fileEvidence(const VerifyOptions& o, const FileReference& r, con
   }
 }
 
+/// A reference of far fewer restarts: what comes rarely may have been seen by one side alone. Far more are no fault,
+/// a well-sampled reference is what one wants.
+void warnOfFewer(uint64_t own, uint64_t reference, const std::function<void(const std::string&)>& warn) {
+  if (2 * reference >= own) return;
+  warn(
+      fmt::format("{} restarts against {} of the reference: light that comes rarely may have been seen by one side "
+                  "alone; as many of it are safer",
+                  own, reference));
+}
+
 /// Restarts at each look: `restarts`, twice that, … up to `mostRestarts`.
 std::vector<uint32_t> looksOf(const VerifyOptions& o) {
   std::vector<uint32_t> looks{o.restarts};
@@ -213,13 +225,14 @@ void writePicture(const VerifyOptions& o, const Verification& v) {
 
 Verification verify(const VerifyOptions& o) {
   checkOptions(o);
+  Verification v;
   const auto warn = [&](const std::string& text) {
+    v.warnings.push_back(text);
     if (o.warn) o.warn(text);
   };
   Laboratory laboratory(o.pluginPaths);
   graph::CompiledGraph graph = laboratory.compile(o.graph, o.overrides, o.width, o.height);
   requirePicture(graph, o.graph, o.output);
-  Verification v;
   FileReference file;
   graph::CompiledGraph referenceGraph;
   if (o.reference.empty()) {
@@ -229,23 +242,22 @@ Verification verify(const VerifyOptions& o) {
     if (bundled) overrides.set.insert(overrides.set.begin(), "path.maxBounces=0");
     referenceGraph = laboratory.compile(v.referenceName, overrides, o.width, o.height);
     requirePicture(referenceGraph, v.referenceName, "radiance");
+    if (o.referenceRestarts > 0) warnOfFewer(o.restarts, o.referenceRestarts, warn);
   } else {
     v.referenceName = o.reference;
     file = readReference(o);
     v.kind = file.kind;
+    image::requireNotNegative(image::exactEvidence(file.picture, o.tile, kCoarse * o.tile), v.referenceName);
     if (v.kind == ReferenceKind::WithError && restartsOf(file.error) < 2)
       warn(fmt::format("'{}' doesn't say of how many restarts it is; taken as of two", o.referenceError));
+    else if (v.kind == ReferenceKind::WithError)
+      warnOfFewer(o.restarts, restartsOf(file.error), warn);
     if (v.kind == ReferenceKind::Scatter)
       warn(fmt::format(
           "nothing is known of the error of '{}' (--reference-stderr FILE, or --reference-exact for a closed "
           "form): it is taken from how its pixels scatter, which finds less",
           o.reference));
   }
-  if (o.referenceRestarts != 0 && (o.referenceRestarts < o.restarts / 2 || o.restarts < o.referenceRestarts / 2))
-    warn(
-        fmt::format("{} restarts against {} of the reference: rare bright events that only the larger side has seen "
-                    "look like a bias",
-                    o.restarts, o.referenceRestarts));
   laboratory.open(o.stage, o.device, static_cast<float>(o.width) / static_cast<float>(o.height));
   const Stage& stage = laboratory.stage();
   for (const std::string& warning : stage.scene.warnings) warn(warning);
@@ -305,6 +317,7 @@ Verification verify(const VerifyOptions& o) {
             fmt::format("the reference itself has {} pixels that are not finite, the first at {}, {} of restart {}",
                         bad.pixels, bad.x, bad.y, bad.restart));
       reference = truth.evidence();
+      image::requireNotNegative(reference, v.referenceName);
       v.referenceMean = truth.mean();
     } else {
       reference = fileEvidence(o, file, v.mean);
@@ -313,6 +326,13 @@ Verification verify(const VerifyOptions& o) {
     v.verdict = image::decide(measured.evidence(), reference, measured.nonFinite(), options);
     if (v.verdict.answer != image::Answer::Undecided || v.look == v.looks) break;
   }
+  // Of a file nobody knows whether events that the graph's restarts lack are behind it.
+  if (v.verdict.answer == image::Answer::Biased && v.kind == ReferenceKind::WithError &&
+      2 * v.verdict.restarts < restartsOf(file.error))
+    warn(fmt::format(
+        "'{}' is of {} restarts, more than twice the {} here: light that comes too rarely for these looks like "
+        "a bias; --restarts {} tells the two apart",
+        o.reference, restartsOf(file.error), v.verdict.restarts, restartsOf(file.error)));
   if (o.device.validation) laboratory.requireNoValidationMessages();
   if (!o.picture.empty()) writePicture(o, v);
   if (!o.json.empty()) writeTextFile(o.json, verificationJson(v, o));

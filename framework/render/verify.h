@@ -55,6 +55,7 @@ struct Verification {
   double secondsPerRestart = 0, secondsPerReferenceRestart = 0;
   uint32_t lanes = 1, referenceLanes = 1;  ///< restarts that ran at a time
   int look = 1, looks = 1;
+  std::vector<std::string> warnings;  ///< that `warn` was given
   image::Picture mean, referenceMean;
 };
 

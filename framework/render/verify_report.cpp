@@ -78,6 +78,7 @@ std::string verificationJson(const Verification& v, const VerifyOptions& o) {
   const image::Verdict& d = v.verdict;
   Json j = {{"verdict", image::answerName(d.answer)},
             {"reasons", d.reasons},
+            {"warnings", v.warnings},
             {"within", number(d.within)},
             {"confidence", 1.0 - o.verdict.alpha},
             {"tolerance", o.verdict.tolerance},

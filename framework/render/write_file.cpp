@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <unistd.h>
 #include <weir/core/error.h>
 #include <weir/image/atomic_file.h>
@@ -6,37 +7,52 @@
 #include <filesystem>
 
 namespace weir::render {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a path ends, whether or not there is a file yet.
+fs::path placeOf(const std::string& path) {
+  std::error_code failed;
+  const fs::path place = fs::weakly_canonical(fs::absolute(path, failed), failed);
+  return failed ? fs::path(path).lexically_normal() : place;
+}
+
+}  // namespace
 
 void checkWritable(const std::string& path) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::path(path).parent_path().empty() ? fs::path(".") : fs::path(path).parent_path();
-  if (!fs::is_directory(folder)) throw InputError("can't write " + path + ": no folder " + folder.string());
-  if (fs::is_directory(path)) throw InputError("can't write " + path + ": that is a folder");
-  if (fs::exists(path) && !fs::is_regular_file(path))
+  std::error_code ignored;
+  fs::path target = path;
+  // As AtomicFile: a link is followed, one that leads nowhere is replaced itself.
+  if (fs::is_symlink(target, ignored)) {
+    const fs::path real = fs::canonical(target, ignored);
+    if (!ignored) target = real;
+  }
+  const fs::path folder = target.parent_path().empty() ? fs::path(".") : target.parent_path();
+  if (!fs::is_directory(folder, ignored)) throw InputError("can't write " + path + ": no folder " + folder.string());
+  if (fs::is_directory(target, ignored)) throw InputError("can't write " + path + ": that is a folder");
+  if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored))
     throw InputError("can't write " + path + ": that is no regular file");
   if (access(folder.c_str(), W_OK) != 0)
     throw InputError("can't write " + path + ": no permission in " + folder.string());
 }
 
-void checkDistinct(const std::vector<NamedPath>& outputs, const std::vector<NamedPath>& inputs) {
-  const auto same = [](const std::string& a, const std::string& b) {
-    std::error_code failed;
-    const std::filesystem::path x = std::filesystem::weakly_canonical(a, failed);
-    if (failed) return a == b;
-    const std::filesystem::path y = std::filesystem::weakly_canonical(b, failed);
-    return failed ? a == b : x == y;
-  };
-  for (size_t i = 0; i < outputs.size(); ++i) {
-    const auto& [option, path] = outputs[i];
-    if (path.empty()) continue;
-    for (size_t j = 0; j < i; ++j) {
-      if (!outputs[j].second.empty() && same(path, outputs[j].second))
-        throw InputError(outputs[j].first + " and " + option + " are one file: " + path);
+void requireDistinct(const std::vector<NamedPath>& outputs, const std::vector<NamedPath>& inputs) {
+  std::vector<std::pair<NamedPath, fs::path>> taken;
+  for (const NamedPath& input : inputs) {
+    if (!input.second.empty()) taken.emplace_back(input, placeOf(input.second));
+  }
+  const size_t read = taken.size();
+  for (const NamedPath& output : outputs) {
+    if (output.second.empty()) continue;
+    const fs::path place = placeOf(output.second);
+    for (size_t i = 0; i < taken.size(); ++i) {
+      if (taken[i].second != place) continue;
+      const NamedPath& other = taken[i].first;
+      throw InputError(fmt::format("{} would write {}, which {} {}", output.first, output.second, other.first,
+                                   i < read ? "reads" : "writes too"));
     }
-    for (const auto& [name, input] : inputs) {
-      if (!input.empty() && same(path, input))
-        throw InputError(option + " " + path + " would overwrite " + name + ", which is read");
-    }
+    taken.emplace_back(output, place);
   }
 }
 

@@ -101,31 +101,6 @@ TEST_F(Program, CompareOfEqualPicturesIsZero) {
   EXPECT_EQ(j.at("pixels"), 32 * 24);
 }
 
-// No figure is printed as NaN or infinity, and none is made up.
-TEST_F(Program, CompareSaysWhereThereIsNoFigure) {
-  const TemporaryFolder elsewhere;
-  const auto at = [&](const std::string& name) { return elsewhere.path() + "/" + name; };
-  image::Picture lit{8, 8, std::vector<float>(256, 1.0f), {}}, black = lit, nothing = lit, below = lit;
-  for (float& v : black.rgba) v = 0.0f;
-  for (float& v : below.rgba) v = -1.0f;
-  for (float& v : nothing.rgba) v = NAN;
-  image::writeExr(at("lit.exr"), lit);
-  image::writeExr(at("black.exr"), black);
-  image::writeExr(at("below.exr"), below);
-  image::writeExr(at("nothing.exr"), nothing);
-  for (const char* reference : {"black.exr", "below.exr"}) {
-    const std::string pair = "compare " + at("lit.exr") + " " + at(reference) + " --tiles 4";
-    const Ran r = weir(pair);
-    EXPECT_EQ(r.status, 0) << r.err;
-    EXPECT_TRUE(has(r.out, "undefined")) << r.out;
-    EXPECT_FALSE(has(r.out, "nan") || has(r.out, "inf ") || has(r.out, "inf%")) << r.out;
-    const Json j = Json::parse(weir(pair + " --json").out);
-    EXPECT_TRUE(j.at("relative_bias").is_null());
-    EXPECT_TRUE(j.at("tiles").at("max_relative").is_null());
-  }
-  expectRefused("compare " + at("nothing.exr") + " " + at("lit.exr") + " --tiles 4", "finite in both");
-}
-
 TEST_F(Program, CompareRefusesPicturesOfOtherThings) {
   radiance(allLights, cornell, "", "a.exr");
   radiance(allLights, points, "", "scene.exr");

@@ -233,40 +233,9 @@ TEST_F(Verify, RefusesWhatMakesNoSense) {
   expectRefused(start + "--size 0x4", "--size");
   expectRefused("verify " + allLights + " --scene " + cornell + " --reference " + sourcePath("scenes/cornell.glb"),
                 "cornell.glb");
-  for (const char* value : {"nan", "inf", "-0.1", "0.2"})
-    expectRefused(start + "--negligible=" + value, "must be 0 … 0.1");
-  for (const char* value : {"nan", "inf", "0"}) expectRefused(start + "--tile-tolerance=" + value, "--tile-tolerance");
-  expectRefused(start + "--alpha=nan", "--alpha");
-  expectRefused(start + "--tolerance=nan", "--tolerance");
-  expectRefused(start + "--first-frame 4294967295 --frames 2", "frame numbers end at 4294967295");
-  expectRefused("verify " + allLights + " --scene " + cornell + " --json /dev/full", "no regular file");
-  expectRefused(
-      "verify " + allLights + " --scene " + cornell + " --out " + file("a.exr") + " --json " + file("./a.exr"),
-      "are one file");
   const Ran help = weir("verify --help");
   EXPECT_EQ(help.status, 0);
   EXPECT_TRUE(has(help.out, "--reference-stderr"));
-  EXPECT_TRUE(has(help.out, "3 undecided"));
-}
-
-// Files that no tile's error can be had from, or that show no light; and nothing that is read is written over.
-TEST_F(Verify, RefusesReferencesThatAreNone) {
-  const TemporaryFolder elsewhere;
-  const std::string j = elsewhere.path() + "/j.exr", e = elsewhere.path() + "/e.exr";
-  const std::string start = "render " + allLights + " --scene " + cornell + " --device " + deviceChoice() +
-                            " --size 32x32 --restarts 2 --set gbuffer.jitter=true --out radiance=";
-  ASSERT_EQ(weir(start + j + " --stderr radiance=" + e).status, 0);
-  const std::string check = "verify " + allLights + " --device " + deviceChoice() + " --scene " + cornell +
-                            " --size 32x32 --restarts 16 --frames 1 --reference " + j + " ";
-  expectRefused(check + "--reference-stderr " + e, "jitter");
-  expectRefused(check, "jitter");
-  const std::string before = read(j);
-  expectRefused(check + "--reference-exact --json " + j, "would overwrite --reference");
-  EXPECT_EQ(read(j), before);
-  image::Picture dark = image::readExr(j);
-  for (float& v : dark.rgba) v = -1.0f;
-  image::writeExr(j, dark);
-  expectRefused(check + "--reference-exact", "below 0");
 }
 
 }  // namespace

@@ -142,5 +142,20 @@ TEST(Metrics, AttributesThatNameOtherThings) {
   EXPECT_EQ(attributeConflicts(a, b).size(), 1u);
 }
 
+TEST(Metrics, NothingIsRelativeToBlackOrNegative) {
+  for (const float b : {0.0f, -1.0f}) {
+    const Picture reference = constantPicture(16, 8, b, b, b);
+    Picture test = reference;
+    test.at(9, 1)[0] += 1.0f;
+    EXPECT_TRUE(std::isnan(measure(test, reference, {.flip = false}).relativeBias));
+    const TileSummary s = compareTiles(test, reference, 8);
+    EXPECT_EQ(s.tiles[0].relative, 0.0);
+    EXPECT_TRUE(std::isnan(s.tiles[1].relative));
+    EXPECT_TRUE(std::isnan(s.rmsRelative));
+    EXPECT_TRUE(std::isnan(s.maxRelative));
+    EXPECT_EQ(s.worst, (std::vector<size_t>{1, 0}));
+  }
+}
+
 }  // namespace
 }  // namespace weir::image
