@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 struct Words {
   render::StageOptions stage;
   std::string device, trace = "auto", json, graphs = "graphs", lanes = "auto";
-  uint32_t size = 256, restarts = 64, frames = 4, referenceRestarts = 16, referenceSamples = 4, tile = 16, seed = 0;
+  uint32_t size = 256, restarts = 64, frames = 4, referenceRestarts = 64, referenceSamples = 4, tile = 16, seed = 0;
   std::vector<std::string> set, only = {""};
   bool modes = false;
 };
