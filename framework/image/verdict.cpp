@@ -37,7 +37,8 @@ constexpr double kSeenWell = 30;
 void spreadRareEvents(Estimate& a, Estimate& b) {
   if (a.count == 0 || b.count == 0 || a.count == b.count) return;
   const Estimate &many = a.count > b.count ? a : b, &few = a.count > b.count ? b : a;
-  if (double(few.count) >= kSeenWell * many.excess) return;
+  // One that never varies lacks nothing: brute force over points gives the same picture each time.
+  if (few.variance == 0.0 || double(few.count) >= kSeenWell * many.excess) return;
   const double ratio = double(a.count) / double(b.count), fromA = a.variance * ratio, fromB = b.variance / ratio;
   if (!(fromA + fromB > a.variance + b.variance)) return;
   a.variance = fromA;
