@@ -124,6 +124,16 @@ void Preparing::texture(const std::string& name, TextureData data) {
 }
 
 Kernel Preparing::kernel(const std::string& file, const KernelOptions& options) {
+  VkPhysicalDeviceProperties properties;
+  vkGetPhysicalDeviceProperties(runtime_.device().physical(), &properties);
+  const VkPhysicalDeviceLimits& limits = properties.limits;
+  const uint32_t side = options.group.side;
+  if (side == 0 || side > std::min(limits.maxComputeWorkGroupSize[0], limits.maxComputeWorkGroupSize[1]) ||
+      side * side > limits.maxComputeWorkGroupInvocations) {
+    throw InputError(fmt::format("{} ({}): kernel '{}' wants workgroups of {} x {}, and {} has at most {} invocations",
+                                 runtime_.compiled().name, runtime_.compiled().type, file, side, side,
+                                 properties.deviceName, limits.maxComputeWorkGroupInvocations));
+  }
   return runtime_.addKernel(KernelKind::Compute, file, options);
 }
 

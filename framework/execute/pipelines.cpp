@@ -65,6 +65,7 @@ Pipeline::Pipeline(Pipeline&& other) noexcept
     : device_(std::exchange(other.device_, nullptr)),
       pipeline_(std::exchange(other.pipeline_, VK_NULL_HANDLE)),
       bindPoint_(other.bindPoint_),
+      groupSide_(other.groupSide_),
       table_(std::move(other.table_)),
       generation_(other.generation_),
       miss_(other.miss_),
@@ -76,6 +77,7 @@ Pipeline& Pipeline::operator=(Pipeline&& other) noexcept {
   std::swap(pipeline_, other.pipeline_);
   std::swap(table_, other.table_);
   bindPoint_ = other.bindPoint_;
+  groupSide_ = other.groupSide_;
   generation_ = other.generation_;
   miss_ = other.miss_;
   hit_ = other.hit_;
@@ -118,7 +120,7 @@ graph::Stages Pipeline::stages() const {
 }
 
 Pipeline Pipeline::compute(const gpu::Device& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
-                           const Specialization& constants, const std::string& name) {
+                           const Specialization& constants, uint32_t groupSide, const std::string& name) {
   const Shader shader(device, spirv);
   const SpecializationInfo special(constants);
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
@@ -126,6 +128,7 @@ Pipeline Pipeline::compute(const gpu::Device& device, VkPipelineLayout layout, s
   info.layout = layout;
   Pipeline p;
   p.device_ = &device;
+  p.groupSide_ = groupSide;
   gpu::check(vkCreateComputePipelines(device.handle(), device.pipelineCache(), 1, &info, nullptr, &p.pipeline_),
              "vkCreateComputePipelines");
   device.name(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<uint64_t>(p.pipeline_), name);
@@ -254,7 +257,7 @@ void Pipeline::launch(VkCommandBuffer commands, uint32_t width, uint32_t height)
   if (bindPoint_ == VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR) {
     vkCmdTraceRaysKHR(commands, &generation_, &miss_, &hit_, &callable_, width, height, 1);
   } else {
-    vkCmdDispatch(commands, (width + kGroupSide - 1) / kGroupSide, (height + kGroupSide - 1) / kGroupSide, 1);
+    vkCmdDispatch(commands, (width + groupSide_ - 1) / groupSide_, (height + groupSide_ - 1) / groupSide_, 1);
   }
 }
 

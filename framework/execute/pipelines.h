@@ -28,8 +28,9 @@ struct HitShaders {
 class Pipeline {
  public:
   Pipeline() = default;
+  /// `groupSide` is that of the shader's workgroups.
   static Pipeline compute(const gpu::Device& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
-                          const Specialization& constants, const std::string& name);
+                          const Specialization& constants, uint32_t groupSide, const std::string& name);
   static Pipeline rays(const gpu::Device& device, VkPipelineLayout layout, std::span<const uint32_t> rayGeneration,
                        const HitShaders& hits, const Specialization& constants, const std::string& name);
   /// Draws into one color target of `format` and a D32 depth buffer, reversed depth; culling is dynamic state.
@@ -41,7 +42,7 @@ class Pipeline {
   Pipeline& operator=(Pipeline&& other) noexcept;
 
   VkPipeline handle() const { return pipeline_; }
-  /// Launches width × height invocations (compute: in 8 × 8 groups). Everything must be bound.
+  /// Launches width × height invocations (compute: in whole groups). Everything must be bound.
   void launch(VkCommandBuffer commands, uint32_t width, uint32_t height) const;
   VkPipelineBindPoint bindPoint() const { return bindPoint_; }
   graph::Stages stages() const;
@@ -50,6 +51,7 @@ class Pipeline {
   const gpu::Device* device_ = nullptr;
   VkPipeline pipeline_ = VK_NULL_HANDLE;
   VkPipelineBindPoint bindPoint_ = VK_PIPELINE_BIND_POINT_COMPUTE;
+  uint32_t groupSide_ = 0;
   gpu::Buffer table_;
   VkStridedDeviceAddressRegionKHR generation_{}, miss_{}, hit_{}, callable_{};
 };

@@ -179,7 +179,11 @@ std::string ports(const KernelInterface& k) {
   }
   for (size_t i = 0; i < d.outputs.size(); ++i, ++binding) {
     layout(d.outputs[i].type);
-    const uint32_t perPixel = k.graph->resources[k.pass->outputs[i].resource].perPixel;
+    const graph::Resource& r = k.graph->resources[k.pass->outputs[i].resource];
+    const uint32_t perPixel = r.perPixel;
+    // Work for an output that nobody reads can be left out.
+    if (r.history || r.graphOutput || r.kept || r.external || r.lastUse != r.producer)
+      s += fmt::format("#define wanted_out_{} 1\n", d.outputs[i].name);
     s += port("out", d.outputs[i].name, d.outputs[i].type, perPixel, binding, "");
   }
   for (const Scratch& scratch : k.scratch) {
@@ -203,7 +207,7 @@ std::string params(const PassDescription& d) {
     names += fmt::format("#define param_{0} (launchBlock.p_{0}{1})\n", p.description->name,
                          type == ParamType::Bool ? " != 0u" : "");
   }
-  block += "} launchBlock;\n#define launchIndex launchBlock.index\n#define launchStream launchBlock.stream\n";
+  block += "} launchBlock;\n#define launchSize launchBlock.size\n#define launchIndex launchBlock.index\n#define launchStream launchBlock.stream\n";
   uint32_t id = 0;
   for (const ParamDescription* p : specialParams(d)) {
     const char* glsl = p->type == ParamType::Float ? "float" : p->type == ParamType::Bool ? "bool" : "int";
@@ -288,7 +292,8 @@ uint32_t paramBits(const ParamDescription& description, const ParamValue& value)
   }
 }
 
-std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::string& file) {
+std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::string& file,
+                         const Group& group) {
   const PassDescription& d = *k.pass->description;
   const SceneParts parts = partsOf(d, k.traits);
   const bool traces = kind == KernelKind::RayPipeline || kind == KernelKind::RayQuery;
@@ -335,6 +340,9 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
 
   switch (kind) {
     case KernelKind::RayPipeline:
+      if (getenv("WEIR_SWIZZLE"))
+        s += "void main() {\n  begin();\n  const uint i = gl_LaunchIDEXT.y * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x, w = i / 32u, l = i % 32u, tx = gl_LaunchSizeEXT.x / 8u;\n  run(uvec2(w % tx * 8u + l % 8u, w / tx * 4u + l / 8u));\n}\n";
+      else
       s += "void main() {\n  begin();\n  run(gl_LaunchIDEXT.xy);\n}\n";
       break;
     case KernelKind::Vertex:
@@ -344,9 +352,10 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
       s += fragmentMain();
       break;
     default:
-      s += fmt::format("layout(local_size_x = {0}, local_size_y = {0}) in;\n", kGroupSide);
+      s += fmt::format("layout(local_size_x = {0}, local_size_y = {0}) in;\n", group.side);
       s += "void main() {\n  begin();\n";
-      s += "  if (all(lessThan(gl_GlobalInvocationID.xy, launchBlock.size))) run(gl_GlobalInvocationID.xy);\n}\n";
+      if (!group.whole) s += "  if (all(lessThan(gl_GlobalInvocationID.xy, launchSize)))";
+      s += "  run(gl_GlobalInvocationID.xy);\n}\n";
   }
   return s;
 }

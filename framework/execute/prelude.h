@@ -3,6 +3,7 @@
 #pragma once
 
 #include <weir/graph/compile.h>
+#include <weir/pass/pass.h>
 #include <weir/scene/traits.h>
 #include <weir/trace/acceleration.h>
 
@@ -32,8 +33,9 @@ struct KernelInterface {
 
 enum class KernelKind : uint8_t { Compute, RayPipeline, RayQuery, Vertex, Fragment };
 
-/// Full source of a kernel: prelude, #include of `file`, main().
-std::string kernelSource(const KernelInterface& interface, KernelKind kind, const std::string& file);
+/// Full source of a kernel: prelude, #include of `file`, main(). `group` is that of compute kernels.
+std::string kernelSource(const KernelInterface& interface, KernelKind kind, const std::string& file,
+                         const Group& group = {});
 
 /// Full source of one of the tracing interface's own hit and miss shaders: the scene, no ports.
 std::string hitShaderSource(const std::string& file, uint32_t sceneTextures, const scene::SceneTraits& traits);
@@ -53,6 +55,5 @@ uint32_t paramBits(const ParamDescription& description, const ParamValue& value)
 
 inline constexpr uint32_t kLaunchBytes = 16;  ///< size, index, stream
 inline constexpr uint32_t kPushLimit = 128;   ///< what every Vulkan device has
-inline constexpr uint32_t kGroupSide = 8;     ///< compute workgroups are 8 × 8
 
 }  // namespace weir::execute

@@ -100,7 +100,7 @@ void SceneMotion::makeKernel(shader::Compiler& compiler) {
   request.source = "#version 460\n#include \"deform.glsl\"\n";
   request.stage = shader::Stage::Compute;
   request.includeFolders.push_back(commonShaderFolder().string());
-  kernel_ = Pipeline::compute(device_, pipelineLayout_, compiler.compile(request).spirv, {}, "deform");
+  kernel_ = Pipeline::compute(device_, pipelineLayout_, compiler.compile(request).spirv, {}, 8, "deform");
 
   const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 18};
   VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};

@@ -18,6 +18,14 @@ struct Kernel {
   uint32_t index = 0xffffffffu;
 };
 
+/// The workgroups of a compute kernel, `side` × `side` invocations.
+struct Group {
+  uint32_t side = 8;
+  /// run() is called by every invocation of a group, those beyond the launch's size too: the shader may share memory
+  /// and wait with barrier(), and must itself look at launchSize before it touches a pixel's data.
+  bool whole = false;
+};
+
 struct KernelOptions {
   /// What this kernel sees in place of a port: {"in_reservoirs", "scratch_ping"}; both sides name the pass's own ports
   /// or scratch.
@@ -25,6 +33,7 @@ struct KernelOptions {
   std::vector<std::pair<std::string, std::string>> defines;
   /// Shader files that exist only in memory, found by #include "name".
   std::vector<std::pair<std::string, std::string>> sources;
+  Group group;  ///< compute kernels only
 };
 
 /// A constant texture of the pass's own, sampled by the shader as `texture_<name>`. RGBA float, clamped.
@@ -55,7 +64,8 @@ class PrepareContext : public PassContext {
   /// A buffer or image of the pass's own, alive within a frame.
   virtual void scratch(const std::string& name, const PortType& type) = 0;
   virtual void texture(const std::string& name, TextureData data) = 0;
-  /// A compute kernel: the file defines `void run(uvec2 id)`, called once for each id below the launch's size.
+  /// A compute kernel: the file defines `void run(uvec2 id)`, called once for each id below the launch's size. The
+  /// device's limits hold for larger groups than 8 × 8 (InputError).
   virtual Kernel kernel(const std::string& file, const KernelOptions& options = {}) = 0;
   /// The same, and it may trace rays (needs scene.acceleration): a ray generation shader or compute with ray queries.
   virtual Kernel rayKernel(const std::string& file, const KernelOptions& options = {}) = 0;

@@ -30,6 +30,11 @@ struct Reservoir {
   float confidence;  ///< c, in fresh frames
 };
 
+/// How often a light was seen of late from a tile of pixels: see shaders/common/visibility_cache.glsl.
+struct VisibilityCell {
+  uint32_t bits;
+};
+
 /// Running mean of a picture, compensated so that a million frames lose nothing.
 struct MeanState {
   float sumHigh[3], sumLow[3];
@@ -62,6 +67,13 @@ struct LayoutOf<passes::Reservoir> {
 };
 
 template <>
+struct LayoutOf<passes::VisibilityCell> {
+  static constexpr const char* name = "VisibilityCell";
+  static constexpr uint32_t version = 1, emptyWord = 0;
+  static constexpr std::array<Field, 1> fields{{{"uint", "bits"}}};
+};
+
+template <>
 struct LayoutOf<passes::MeanState> {
   static constexpr const char* name = "MeanState";
   static constexpr uint32_t version = 1, emptyWord = 0;
@@ -76,3 +88,15 @@ struct LayoutOf<passes::MeanState> {
 };
 
 }  // namespace weir
+
+namespace weir::passes {
+
+/// A cache of visibility: 512 cells for each tile of 16 × 16 pixels.
+inline PortType visibilityTiles() {
+  PortType t = perPixel<VisibilityCell>();
+  t.scaleDenominator = 16;
+  t.perPixel = 512;
+  return t;
+}
+
+}  // namespace weir::passes

@@ -16,7 +16,8 @@ class RayTraced final : public Pass {
   void record(RecordContext& c) override;
 
  private:
-  Kernel kernel_;
+  Kernel kernel_, surfaces_;
+  bool split_ = false;
 };
 
 /// Rasterises triangle numbers, then resolves them to surfaces in a compute shader. Needs no ray tracing.

@@ -6,6 +6,7 @@ namespace weir::passes {
 void Initial::describe(PassDescription& d) {
   d.doc("Light candidates by power, resampled into each pixel's reservoirs (RIS)");
   d.input("surface", perPixel<PackedSurface>());
+  describePreference(d);
   d.output("reservoirs", perPixel<Reservoir>()).times("samples").doc("One or more reservoirs a pixel");
   d.param("candidates", 32).range(1, 1024).doc("Lights that each pixel looks at");
   d.param("bsdfCandidates", 1)
@@ -37,19 +38,34 @@ void Initial::describe(PassDescription& d) {
   d.param("visibility", true)
       .specialises()
       .doc("Shoot a shadow ray to each chosen sample: hidden ones are not passed on");
+  d.param("sharing", "tile")
+      .oneOf({"none", "tile"})
+      .doc(
+          "Who looks at a pick from the light table: the pixel alone, or all of a tile of 16 x 16 pixels, each of which "
+          "picks one. Then the size of the table hardly matters. bsdfRays share nothing");
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
   d.needs(Need::FrameCamera).needs(Need::FrameIndex);
 }
 
 void Initial::prepare(PrepareContext& c) {
-  KernelOptions options;
+  separate_ = false;
   const bool rays = c.integer("bsdfRays") > 0;
-  if (rays) options.defines.emplace_back("BSDF_RAYS", "1");
-  kernel_ = rays || c.boolean("visibility") ? c.rayKernel("initial.glsl", options) : c.kernel("initial.glsl", options);
+  if (rays) {
+    kernel_ = c.rayKernel("initial.glsl", {.defines = {{"BSDF_RAYS", "1"}}});
+    return;
+  }
+  if (c.text("sharing") == "tile") {
+    kernel_ = c.kernel("initial_tiles.glsl", {.group = {.side = 16, .whole = true}});
+    separate_ = c.boolean("visibility");
+    if (separate_) visibility_ = c.rayKernel("initial_visibility.glsl");
+    return;
+  }
+  kernel_ = c.boolean("visibility") ? c.rayKernel("initial.glsl") : c.kernel("initial.glsl");
 }
 
 void Initial::record(RecordContext& c) {
   c.launch(kernel_);
+  if (separate_) c.launch(visibility_);
 }
 
 }  // namespace weir::passes

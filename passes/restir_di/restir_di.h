@@ -15,6 +15,18 @@ class Initial final : public Pass {
   void record(RecordContext& c) override;
 
  private:
+  Kernel kernel_, visibility_;
+  bool separate_ = false;  ///< rays are shot by a launch of their own
+};
+
+/// Learns which lights are seen from where, for passes that prefer such.
+class VisibilityCache final : public Pass {
+ public:
+  static void describe(PassDescription& d);
+  void prepare(PrepareContext& c) override;
+  void record(RecordContext& c) override;
+
+ private:
   Kernel kernel_;
 };
 
@@ -51,6 +63,8 @@ class Shade final : public Pass {
   Kernel kernel_;
 };
 
+/// The input through which a pass learns what is likely seen.
+void describePreference(PassDescription& d);
 /// Parameters that both kinds of reuse share: MIS weights and what counts as a similar surface.
 void describeReuse(PassDescription& d);
 /// A kernel that traces rays only where the parameters ask for them.

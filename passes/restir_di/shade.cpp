@@ -8,6 +8,9 @@ void Shade::describe(PassDescription& d) {
   d.input("surface", perPixel<PackedSurface>());
   d.input("emission", storageImage(Format::RGBA32F));
   d.input("reservoirs", perPixel<Reservoir>()).anyCount();
+  d.output("tested", perPixel<Reservoir>())
+      .countOf("reservoirs")
+      .doc("The reservoirs with what the final rays found, for a VisibilityCache");
   d.output("color", storageImage(Format::RGBA32F)).radiance();
   d.param("visibility", true).specialises().doc("Shoot the final shadow ray; without it, light goes through walls");
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);

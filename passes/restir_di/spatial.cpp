@@ -7,6 +7,12 @@
 
 namespace weir::passes {
 
+void describePreference(PassDescription& d) {
+  d.input("visibility", visibilityTiles())
+      .optional()
+      .doc("A VisibilityCache's, @previous: samples that are likely seen are chosen rather");
+}
+
 void describeReuse(PassDescription& d) {
   d.param("mis", "pairwise")
       .oneOf({"biased", "z", "balance", "pairwise"})
@@ -48,6 +54,7 @@ void Spatial::describe(PassDescription& d) {
   d.doc("Merges each pixel's reservoirs with those of pixels around it");
   d.input("surface", perPixel<PackedSurface>());
   d.input("reservoirs", perPixel<Reservoir>()).anyCount();
+  describePreference(d);
   d.output("reservoirs", perPixel<Reservoir>()).countOf("reservoirs").passesThrough("reservoirs");
   d.param("iterations", 1).range(1, 4).doc("How often; each works on what the one before it left");
   d.param("neighbours", 4).range(1, 16).doc("Pixels that are tried in each iteration");

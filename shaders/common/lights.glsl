@@ -109,6 +109,18 @@ LightSample evaluateTriangle(Light light, vec2 barycentrics, vec3 position) {
   return s;
 }
 
+// A point light without a range.
+LightSample evaluatePoint(vec3 at, vec3 intensity, vec3 position) {
+  LightSample s;
+  const vec3 d = at - position;
+  const float d2 = dot(d, d);
+  s.target = at;
+  s.area = 1.0;
+  s.direction = d * inversesqrt(d2);
+  s.radiance = d2 > 0.0 ? intensity / d2 : vec3(0.0);
+  return s;
+}
+
 LightSample evaluatePunctual(Light light, vec3 position) {
   LightSample s;
   s.area = 1.0;

@@ -18,12 +18,18 @@
 
 #include "mutants.glsl"
 #include "reservoir.glsl"
+#include "visibility_cache.glsl"
 
 // Defined by the pass. A neighbour's reservoir has the confidence with which it counts here.
 uint neighbourCount();
 Reservoir neighbourReservoir(uint i);
 Surface neighbourSurface(uint i);
+bool isThisSurface(uint i);  // that neighbour is the merging surface itself, seen as it is now: what is known there is known here
 float nextChance();  // uniform in [0, 1), a new one each time
+uint mergingTile();  // of the merging pixel, in the cache of visibility
+
+// What is likely seen from the merging pixel is chosen rather. MIS weights never ask: they must not depend on what was found before.
+float preference(Reservoir r) { return guessVisibility(mergingTile(), lightOf(r)); }
 
 #if defined(PREVIOUS_DOMAIN) && defined(SCENE_ANIMATED)
 LightSample lightThere(uint light, uint place, vec3 position) { 

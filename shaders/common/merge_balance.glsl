@@ -20,13 +20,14 @@ Reservoir merge(Surface surface, Reservoir own) {
     for (uint j = 0u; j < count; ++j) {
       const Surface neighbour = neighbourSurface(j);
       const LightSample there = lightThere(lightOf(r), r.place, neighbour.position);
-      const float theirs = neighbourReservoir(j).confidence * neighbourTarget(neighbour, there, j == i && isSeen(r)) *
+      const float theirs = neighbourReservoir(j).confidence * neighbourTarget(neighbour, there, isSeen(r) && (j == i || (isOwn && isThisSurface(j)))) *
                            measureThere(there, here);
       sum += MUTANT(22, j == i ? theirs : 0.0, theirs);
       if (j == i) itsOwn = theirs;
     }
     const float weight = isOwn ? r.weight : weightHere(r, here);
-    offer(selection, lightOf(r), r.place, target, itsOwn / sum * target * weight, isOwn && isSeen(r), chance);
+    const float preferred = target * preference(r);
+    offer(selection, lightOf(r), r.place, preferred, itsOwn / sum * preferred * weight, isSeen(r) && (isOwn || isThisSurface(i)), chance);
   }
   return finishMerge(selection, surface, total);
 }

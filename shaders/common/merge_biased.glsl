@@ -12,11 +12,13 @@ Reservoir merge(Surface surface, Reservoir own) {
     const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
     const float target = targetFunction(surface, here);
     if (!(target > 0.0)) continue;
-    offer(selection, lightOf(r), r.place, target, r.confidence / total * target * weightHere(r, here), false, chance);
+    const float preferred = target * preference(r);
+    offer(selection, lightOf(r), r.place, preferred, r.confidence / total * preferred * weightHere(r, here),
+          isSeen(r) && isThisSurface(i), chance);
   }
   const float chance = nextChance();
   if (!isNull(own)) {
-    const float target = targetFunction(surface, evaluateLight(lightOf(own), own.place, surface.position));
+    const float target = targetFunction(surface, evaluateLight(lightOf(own), own.place, surface.position)) * preference(own);
     const float weight = own.confidence / total;
     offer(selection, lightOf(own), own.place, target, weight * target * own.weight, isSeen(own), chance);
   }

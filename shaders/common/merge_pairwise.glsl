@@ -28,7 +28,7 @@ Reservoir merge(Surface surface, Reservoir own) {
 #endif
       const LightSample there = lightThere(lightOf(own), own.place, neighbour.position);
       const float here = own.confidence * ownTarget;
-      const float theirs = others * neighbourTarget(paired, there, false) * measureThere(there, ownLight);
+      const float theirs = others * neighbourTarget(paired, there, isSeen(own) && isThisSurface(i)) * measureThere(there, ownLight);
       ownMis += MUTANT(17, 0.0, r.confidence / total * (here / (here + theirs)));
     }
     if (isNull(r)) continue;
@@ -39,11 +39,13 @@ Reservoir merge(Surface surface, Reservoir own) {
     const LightSample there = lightThere(lightOf(r), r.place, neighbour.position);
     const float theirs = MUTANT(18, r.confidence, others) * neighbourTarget(neighbour, there, isSeen(r)) * measureThere(there, here);
     weight *= MUTANT(21, 1.0, theirs / (own.confidence * target + theirs));
-    offer(selection, lightOf(r), r.place, target, 
-          weight * MUTANT(19, targetFunction(neighbour, there), target) * weightHere(r, here), MUTANT(20, isSeen(r), false), chance);
+    const float preferred = preference(r);
+    offer(selection, lightOf(r), r.place, target * preferred,
+          weight * MUTANT(19, targetFunction(neighbour, there), target) * preferred * weightHere(r, here), MUTANT(20, isSeen(r), isSeen(r) && isThisSurface(i)), chance);
   }
   const float chance = nextChance();
   if (ownTarget > 0.0) {
+    ownTarget *= preference(own);
     offer(selection, lightOf(own), own.place, ownTarget, ownMis * ownTarget * own.weight, isSeen(own), chance);
   }
   return finishMerge(selection, surface, total);

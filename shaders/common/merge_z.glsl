@@ -13,6 +13,7 @@ Reservoir merge(Surface surface, Reservoir own) {
   const float threshold = own.confidence > 0.0 ? param_zThreshold : 0.0;
   uint from = count;  // whose sample was chosen; `count`: the own one
   bool seenThere = false;
+  float chosenTarget = 0.0;  // p̂_c of what was chosen
   for (uint i = 0u; i < count; ++i) {
     const Reservoir r = neighbourReservoir(i);
     const float chance = nextChance();
@@ -20,8 +21,10 @@ Reservoir merge(Surface surface, Reservoir own) {
     const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
     const float target = targetFunction(surface, here);
     if (!(target > 0.0)) continue;
-    const float weight = r.confidence / total * target * weightHere(r, here);
-    if (offer(selection, lightOf(r), r.place, target, weight, false, chance)) {
+    const float preferred = target * preference(r);
+    const float weight = r.confidence / total * preferred * weightHere(r, here);
+    if (offer(selection, lightOf(r), r.place, preferred, weight, isSeen(r) && isThisSurface(i), chance)) {
+      chosenTarget = target;
       from = i;
       seenThere = isSeen(r);
     }
@@ -29,8 +32,12 @@ Reservoir merge(Surface surface, Reservoir own) {
   const float chance = nextChance();
   if (!isNull(own)) {
     const float target = targetFunction(surface, evaluateLight(lightOf(own), own.place, surface.position));
-    const float weight = own.confidence / total * target * own.weight;
-    if (offer(selection, lightOf(own), own.place, target, weight, isSeen(own), chance)) from = count;
+    const float preferred = target * preference(own);
+    const float weight = own.confidence / total * preferred * own.weight;
+    if (offer(selection, lightOf(own), own.place, preferred, weight, isSeen(own), chance)) {
+      chosenTarget = target;
+      from = count;
+    }
   }
   Reservoir merged = finishMerge(selection, surface, total);
   if (isNull(merged)) return merged;
@@ -40,8 +47,8 @@ Reservoir merge(Surface surface, Reservoir own) {
   for (uint i = 0u; i < count; ++i) {
     const Surface neighbour = neighbourSurface(i);
     const LightSample there = lightThere(lightOf(merged), merged.place, neighbour.position);
-    const float theirs = neighbourTarget(neighbour, there, i == from && seenThere) * measureThere(there, here);
-    if (MUTANT(24, true, theirs > 0.0 && theirs >= threshold * selection.target)) {
+    const float theirs = neighbourTarget(neighbour, there, i == from ? seenThere : from == count && isSeen(own) && isThisSurface(i)) * measureThere(there, here);
+    if (MUTANT(24, true, theirs > 0.0 && theirs >= threshold * chosenTarget)) {
       z += neighbourReservoir(i).confidence;
     } else if (i == from) {
       // Hidden where it comes from, or next to never found there: its part of the sum is in the others' weights.

@@ -1,58 +1,7 @@
 // Initial candidates by streaming RIS (Talbot et al. 2005; Bitterli et al. 2020, algorithm 3): M lights picked by power, one kept in
 // proportion to p̂/p. The environment is also found by directions that the BSDF prefers, points on triangles along its specular lobe,
 // and both by rays along the BSDF. Several reservoirs of a pixel share the candidates and choose from them independently.
-#include "mutants.glsl"
-#include "random.glsl"
-#include "reservoir.glsl"
-#include "light_sample.glsl"
-
-const int kByArea = 0, kBySolidAngle = 1;
-
-TriangleWays triangleWays() { return TriangleWays(param_triangles == kBySolidAngle, param_lobeShare); }
-
-Candidate drawCandidate(Light light, uvec2 bits, Surface surface, inout Random random) {
-  Candidate c;
-#ifdef SCENE_ENVIRONMENT
-  if ((light.kind & kKindMask) == kEnvironment) {
-    c.place = pickEnvironment(nextBits4(random), c.spread);
-    c.light = evaluateEnvironment(c.place, surface.position);
-    return c;
-  }
-#endif
-  const vec2 u = vec2(uniformFloat(bits.x), uniformFloat(bits.y));
-  if ((light.kind & kKindMask) == kTriangle) return drawOnTriangle(light, u, surface, triangleWays());
-  c.place = packPlace(u);
-  c.light = evaluateLight(light, c.place, surface.position);
-  c.spread = c.light.area;
-  return c;
-}
-
-// All ways to a point give it the weight p̂ over the sum of their expected numbers there: the balance heuristic over all candidates of the
-// pixel (Veach 1997; Talbot et al. 2005). For the environment per steradian, for triangles per m².
-#ifdef BSDF_RAYS
-float triangleWeight(Surface surface, Light light, LightSample at, float density, float target) {
-  return target / (float(param_candidates) * mixedPdf(light, param_uniformShare) * density +
-                   float(param_bsdfRays) * bsdfDensity(surface, at.direction) * MUTANT(32, 1.0, steradianPerArea(light, at, surface.position)));
-}
-#endif
-
-#ifdef SCENE_ENVIRONMENT
-float environmentWeight(Surface surface, Light environment, LightSample light, float density, float target) {
-#ifdef BSDF_RAYS
-  const float byBsdf = float(param_bsdfCandidates + param_bsdfRays);
-#else
-  const float byBsdf = float(param_bsdfCandidates);
-#endif
-  return target / (float(param_candidates) * mixedPdf(environment, param_uniformShare) * density +
-                   MUTANT(31, 0.0, byBsdf) * bsdfDensity(surface, light.direction));
-}
-#endif
-
-void offerAll(inout Selection selections[out_reservoirs_count], uint light, uint place, float target, float weight, bool seen,
-              inout Random random) {
-  const vec4 keep = next4(random);
-  for (uint k = 0u; k < out_reservoirs_count; ++k) offer(selections[k], light, place, target, weight, seen, keep[k]);
-}
+#include "initial_weights.glsl"
 
 #ifdef BSDF_RAYS
 // A ray along the BSDF. What it meets is a candidate if it is a light: an emissive triangle, or the environment where it meets nothing.
@@ -113,6 +62,7 @@ void run(uvec2 pixel) {
   Surface surface;
   if (lit) {
     surface = unpackSurface(packed, pixel, camera, frameSize);
+    const uint tile = cacheTile(pixel);
     Random random = randomFor(pixel, 0u);
     for (int i = 0; i < param_candidates; ++i) {
       uvec4 bits = nextBits4(random);
@@ -121,7 +71,7 @@ void run(uvec2 pixel) {
       const uint chosen = pickMixed(bits.xy, param_uniformShare);
       const Light light = sceneLights[chosen];
       const Candidate c = drawCandidate(light, bits.zw, surface, random);
-      const float target = targetFunction(surface, c.light);
+      const float target = targetFunction(surface, c.light) * guessVisibility(tile, chosen);
       if (!(target > 0.0)) continue;
       // 1/M · p̂ / p, with p = pdf of the light times density on it.
       float weight = target * c.spread / (mixedPdf(light, param_uniformShare) * float(MUTANT(30, param_candidates + 1, param_candidates)));
@@ -136,16 +86,7 @@ void run(uvec2 pixel) {
       offerAll(selections, chosen, c.place, target, weight, false, random);
     }
 #ifdef SCENE_ENVIRONMENT
-    const uint last = lightCount() - 1u;  // where the environment is
-    const Light environment = sceneLights[last];
-    for (int i = 0; i < param_bsdfCandidates && (environment.kind & kKindMask) == kEnvironment; ++i) {
-      const uint place = environmentPlace(sampleBsdf(surface, next4(random).xyz));
-      const LightSample light = evaluateEnvironment(place, surface.position);
-      const float target = targetFunction(surface, light);
-      if (!(target > 0.0)) continue;
-      offerAll(selections, last, place, target,
-               environmentWeight(surface, environment, light, environmentDensity(place), target), false, random);
-    }
+    lookAlongBsdf(selections, surface, tile, random);
 #endif
 #ifdef BSDF_RAYS
     for (int i = 0; i < param_bsdfRays; ++i) offerRay(selections, surface, random);

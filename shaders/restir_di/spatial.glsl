@@ -11,6 +11,7 @@ uint neighbours[kMostNeighbours];  // indices of pixels
 uint found = 0u;
 uint which = 0u;  // of a pixel's samples
 Random random;
+uvec2 here;
 
 uint neighbourCount() { return found; }
 #ifdef WEIR_MUTANT
@@ -33,7 +34,9 @@ Surface neighbourSurface(uint i) {
 #endif
   return s;
 }
+bool isThisSurface(uint i) { return false; }
 float nextChance() { return next1(random); }
+uint mergingTile() { return cacheTile(here); }
 
 // Who takes part follows from the surfaces alone.
 void findNeighbours(uvec2 pixel, PackedSurface packed) {
@@ -61,6 +64,7 @@ void run(uvec2 pixel) {
   }
   const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
   random = randomFor(pixel, launchIndex);
+  here = pixel;
 #ifdef WEIR_MUTANT
   centre = surface;
 #endif

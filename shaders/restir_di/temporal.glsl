@@ -16,6 +16,10 @@ vec4 chances;
 uint neighbourCount() { return 1u; }
 Reservoir neighbourReservoir(uint i) { return history; }
 Surface neighbourSurface(uint i) { return beforeSurface; }
+uvec2 here;
+bool stays = false;
+bool isThisSurface(uint i) { return stays; }
+uint mergingTile() { return cacheTile(here); }
 float nextChance() {
   chances = chances.yzwx;
   return chances.w;
@@ -49,8 +53,15 @@ void run(uvec2 pixel) {
     for (uint k = 0u; k < kPerPixel; ++k) out_reservoirs[index * kPerPixel + k] = in_reservoirs[index * kPerPixel + k];
     return;
   }
+#ifndef SCENE_ANIMATED
+  // Nothing moved, neither here nor between here and any light.
+  stays = uvec2(before) == pixel && camera == previousCamera && packed.distance == beforePacked.distance &&
+          packed.geometricNormal == beforePacked.geometricNormal &&
+          (packed.roughnessJitter & 0xffffu) == (beforePacked.roughnessJitter & 0xffffu);
+#endif
   beforeSurface = unpackSurface(beforePacked, uvec2(before), MUTANT(14, camera, previousCamera), frameSize);
   Random random = randomFor(pixel, 0u);
+  here = pixel;
   for (uint k = 0u; k < kPerPixel; ++k) {
     const Reservoir own = in_reservoirs[index * kPerPixel + k];
     history = sanitized(in_history[beforeIndex * kPerPixel + k]);

@@ -1,0 +1,104 @@
+// Initial candidates by streaming RIS, as in initial.glsl, drawn by tiles of 16 × 16 pixels together: each pixel picks one light, and all
+// of the tile look through the picks in shared memory. A pixel then reads the light table once instead of M times, so that its size hardly
+// matters (presampled tiles, Wyman and Panteleev 2021, without the pass before), and its picks are spread over the whole table.
+//
+// Every pick has the density of pickMixed(), and each pixel looks at M of them whose numbers in the tile are uniform, so that the sum of
+// its weights is unbiased as with picks of its own. That neighbours look at the same picks makes them alike, not wrong.
+#include "initial_weights.glsl"
+
+const uint kPicks = 256u;
+const uint kPlain = 0x80000000u;  // a point light without a range: position and intensity are all there is to it
+
+shared uvec4 pickPlace[kPicks];  // position, and the light's number
+shared uvec4 pickPower[kPicks];  // intensity, and the pick's density
+#ifdef has_in_visibility
+shared float pickGuess[kPicks];
+#endif
+
+void pickForTile(uvec2 pixel, uint tile, uint thread, uint turn) {
+  Random random = randomFor(pixel, 1u);
+  random.dimension = turn;
+  uvec4 bits = nextBits4(random);
+  // One pick in each part of the table: together they have its distribution, with less chance in how often a light comes.
+  bits.x = stratumBits(bits.x, thread, kPicks);
+  const uint chosen = pickMixed(bits.xy, param_uniformShare);
+  const Light light = sceneLights[chosen];
+  const bool plain = (light.kind & kKindMask) == kPoint && !(light.b.z > 0.0);
+  pickPlace[thread] = uvec4(floatBitsToUint(light.position), chosen | (plain ? kPlain : 0u));
+  pickPower[thread] = uvec4(floatBitsToUint(light.radiance), floatBitsToUint(mixedPdf(light, param_uniformShare)));
+#ifdef has_in_visibility
+  pickGuess[thread] = guessVisibility(tile, chosen);
+#endif
+}
+
+// `count` of the picks: one in each of as many parts of the tile's, which begin at a random place, so that all are equally likely.
+void lookThrough(inout Selection selections[out_reservoirs_count], Surface surface, uint count, uint begin, inout Random random) {
+  const uint step = (kPicks << 16u) / count;
+  uvec4 words = uvec4(0u);
+  for (uint i = 0u; i < count; ++i) {
+    words = words.yzwx;
+    if ((i & 3u) == 0u) words = nextBits4(random);
+    const uint low = (i * step) >> 16u, width = (((i + 1u) * step) >> 16u) - low;
+    const uint at = (begin + low + (((words.x & 255u) * width) >> 8u)) & (kPicks - 1u);
+    const uvec4 where = pickPlace[at], power = pickPower[at];
+    const uint chosen = where.w & ~kPlain;
+    const float pdf = uintBitsToFloat(power.w);
+    Candidate c;
+    c.place = 0u;
+    c.spread = 1.0;
+    float weight = 0.0;
+    if ((where.w & kPlain) != 0u) {
+      c.light = evaluatePoint(uintBitsToFloat(where.xyz), uintBitsToFloat(power.xyz), surface.position);
+    } else {
+      c = drawCandidate(sceneLights[chosen], nextBits4(random).xy, surface, random);
+    }
+    float target = targetFunction(surface, c.light);
+#ifdef has_in_visibility
+    target *= pickGuess[at];
+#endif
+    if (!(target > 0.0)) continue;
+    // 1/M · p̂ / p, with p = pdf of the light times density on it.
+    weight = target * c.spread / (pdf * float(MUTANT(30, param_candidates + 1, param_candidates)));
+#ifdef SCENE_ENVIRONMENT
+    if ((where.w & kPlain) == 0u) {
+      const Light light = sceneLights[chosen];
+      if ((light.kind & kKindMask) == kEnvironment) weight = environmentWeight(surface, light, c.light, 1.0 / c.spread, target);
+    }
+#endif
+    if (out_reservoirs_count == 1u) {
+      offer(selections[0], chosen, c.place, target, weight, false, uniformFloat(words.x));
+    } else {
+      offerAll(selections, chosen, c.place, target, weight, false, random);
+    }
+  }
+}
+
+void run(uvec2 pixel) {
+  const uint thread = gl_LocalInvocationIndex, index = pixel.y * frameWidth + pixel.x;
+  const uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  const bool inside = all(lessThan(pixel, launchSize));
+  Selection selections[out_reservoirs_count];
+  for (uint k = 0u; k < out_reservoirs_count; ++k) selections[k] = noSelection();
+
+  PackedSurface packed;
+  packed.distance = 0.0;
+  if (inside) packed = in_surface[index];
+  const bool lit = isSurface(packed) && lightCount() > 0u;
+  Surface surface;
+  if (lit) surface = unpackSurface(packed, pixel, camera, frameSize);
+  Random random = randomFor(pixel, 0u);
+  const uint all = lightCount() > 0u ? uint(param_candidates) : 0u;
+  for (uint done = 0u, turn = 0u; done < all; done += kPicks, ++turn) {
+    if (turn > 0u) barrier();
+    pickForTile(pixel, tile, thread, turn);
+    barrier();
+    const uint begin = pcg4d(uvec4(tile, frameIndex, frameSeed ^ launchStream, turn)).x >> 24u;
+    if (lit) lookThrough(selections, surface, min(all - done, kPicks), begin, random);
+  }
+  if (!inside) return;
+#ifdef SCENE_ENVIRONMENT
+  if (lit) lookAlongBsdf(selections, surface, tile, random);
+#endif
+  for (uint k = 0u; k < out_reservoirs_count; ++k)
+    out_reservoirs[index * out_reservoirs_count + k] = lit ? finish(selections[k], 1.0) : emptyReservoir();
+}
