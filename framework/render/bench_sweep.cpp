@@ -128,9 +128,9 @@ class Expander {
         (value == "true" ? c.overrides.enable : c.overrides.disable).push_back(sweep.pass);
       else
         c.overrides.set.push_back(sweep.name() + "=" + value);
-      c.label += " " + sweep.name() + "=" + value;
+      c.label.append(" ").append(sweep.name()).append("=").append(value);
     }
-    if (!part.name.empty()) c.label = part.name + ": " + c.label;
+    if (!part.name.empty()) c.label.insert(0, part.name + ": ");
     graph::Description changed = description;
     std::vector<graph::Diagnostic> found;
     graph::apply(changed, c.overrides, found);

@@ -58,7 +58,8 @@ std::string knobText(const Json& record, const std::string& knob) {
 Row rowOf(const Json& record, const BenchTable& table) {
   Row row;
   row.measured = true;
-  for (const std::string& knob : table.knobs) row.knobs += (row.knobs.empty() ? "" : ",") + knobText(record, knob);
+  for (const std::string& knob : table.knobs)
+    row.knobs.append(row.knobs.empty() ? "" : ",").append(knobText(record, knob));
   const Json gpu = at(record, {"frame", "gpu_ms"});
   row.median = number(at(gpu, {"median"}));
   // Of a normal distribution: p95 lies 1.645 σ above the median, whose standard error is 1.2533 σ / sqrt(frames).
