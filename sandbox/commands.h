@@ -12,6 +12,7 @@ struct CommandStatus {
 
 void addRenderCommand(CLI::App& app);
 void addVerifyCommand(CLI::App& app);
+void addBenchCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addPassesCommand(CLI::App& app);
 void addSceneCommand(CLI::App& app);

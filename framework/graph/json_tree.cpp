@@ -66,8 +66,9 @@ class CountingIterator {
 /// Builds the tree from events. The names of its members are nlohmann's.
 class Builder {
  public:
-  Builder(Position& position, const std::string& file, JsonValue& root, std::vector<Diagnostic>& diagnostics)
-      : position_(position), file_(file), root_(root), diagnostics_(diagnostics) {}
+  Builder(Position& position, const std::string& file, JsonValue& root, std::vector<Diagnostic>& diagnostics,
+          size_t mostElements)
+      : position_(position), file_(file), root_(root), diagnostics_(diagnostics), mostElements_(mostElements) {}
 
   bool null() { return scalar(nullptr); }
   bool boolean(bool value) { return scalar(value); }
@@ -167,8 +168,7 @@ class Builder {
     JsonValue json;
     json.scalar = std::move(value);
     json.line = position_.lineOfLastRead();
-    store(std::move(json));
-    return true;
+    return store(std::move(json));
   }
 
   bool open(JsonValue::Kind kind) {
@@ -184,33 +184,39 @@ class Builder {
   bool close() {
     JsonValue value = std::move(levels_.back().value);
     levels_.pop_back();
-    store(std::move(value));
-    return true;
+    return store(std::move(value));
   }
 
-  void store(JsonValue value) {
+  bool store(JsonValue value) {
     if (levels_.empty()) {
       root_ = std::move(value);
-      return;
+      return true;
     }
     Level& level = levels_.back();
-    if (level.value.isObject() && !level.repeated)
+    if (level.value.isObject() && !level.repeated) {
       level.value.members.push_back({std::move(level.key), level.line, std::move(value)});
+    } else if (level.value.kind == JsonValue::Kind::Array && mostElements_ > 0) {
+      if (++elements_ > mostElements_) return fail(fmt::format("more than {} elements of arrays", mostElements_));
+      level.value.elements.push_back(std::move(value));
+    }
     level.key.clear();
+    return true;
   }
 
   Position& position_;
   const std::string& file_;
   JsonValue& root_;
   std::vector<Diagnostic>& diagnostics_;
+  size_t mostElements_, elements_ = 0;
   std::vector<Level> levels_;
 };
 
 }  // namespace
 
-bool readJson(const std::string& text, const std::string& file, JsonValue& root, std::vector<Diagnostic>& diagnostics) {
+bool readJson(const std::string& text, const std::string& file, JsonValue& root, std::vector<Diagnostic>& diagnostics,
+              size_t mostElements) {
   Position position{text};
-  Builder builder(position, file, root, diagnostics);
+  Builder builder(position, file, root, diagnostics, mostElements);
   return nlohmann::json::sax_parse(CountingIterator(position, 0), CountingIterator(position, text.size()), &builder);
 }
 

@@ -22,13 +22,16 @@ graph::CompiledGraph Laboratory::compile(const std::string& file, const graph::O
 }
 
 void Laboratory::open(const StageOptions& stage, const DeviceChoice& choice, float aspect) {
+  scene_.reset();
   stage_ = makeStage(stage, aspect);
   sceneFolder_ = std::filesystem::path(stage.scene).parent_path().string();
-  gpu::DeviceOptions options;
-  options.choice = choice.device;
-  options.validation = choice.validation;
-  device_ = std::make_unique<gpu::Device>(options);
-  backend_ = trace::chooseBackend(choice.trace, *device_);
+  if (!device_) {
+    gpu::DeviceOptions options;
+    options.choice = choice.device;
+    options.validation = choice.validation;
+    device_ = std::make_unique<gpu::Device>(options);
+    backend_ = trace::chooseBackend(choice.trace, *device_);
+  }
   scene_ = std::make_unique<scene::SceneGpu>(*device_, stage_->scene, stage_->prepared,
                                              device_->capabilities().accelerationStructure);
 }
@@ -40,11 +43,12 @@ void Laboratory::requireNoValidationMessages() const {
   throw RuntimeError(text);
 }
 
-std::unique_ptr<execute::Executor> Laboratory::executor(graph::CompiledGraph graph, uint32_t lanes) {
+std::unique_ptr<execute::Executor> Laboratory::executor(graph::CompiledGraph graph, uint32_t lanes, bool countRays) {
   execute::ExecutorOptions options;
   options.backend = backend_;
   options.sceneFolder = sceneFolder_;
   options.lanes = lanes;
+  options.countRays = countRays;
   return std::make_unique<execute::Executor>(*device_, compiler_, registry_, *scene_, std::move(graph), options);
 }
 

@@ -29,15 +29,19 @@ class Laboratory {
   /// Throws graph::GraphError.
   graph::CompiledGraph compile(const std::string& file, const graph::Overrides& overrides, uint32_t width,
                                uint32_t height);
-  /// Reads and uploads. Throws InputError, RuntimeError.
+  /// Reads and uploads. Throws InputError, RuntimeError. Another stage may follow, on the device of the first call; no
+  /// executor may live on then.
   void open(const StageOptions& stage, const DeviceChoice& choice, float aspect);
 
   const Stage& stage() const { return *stage_; }
   const gpu::Device& device() const { return *device_; }
+  trace::Backend backend() const { return backend_; }
+  Registry& registry() { return registry_; }
+  uint64_t sceneBytes() const { return scene_->bytes(); }
   /// Throws RuntimeError with what the validation layers have said so far.
   void requireNoValidationMessages() const;
-  /// `lanes`: as in execute::ExecutorOptions.
-  std::unique_ptr<execute::Executor> executor(graph::CompiledGraph graph, uint32_t lanes = 1);
+  /// `lanes`, `countRays`: as in execute::ExecutorOptions.
+  std::unique_ptr<execute::Executor> executor(graph::CompiledGraph graph, uint32_t lanes = 1, bool countRays = false);
 
  private:
   Registry registry_;

@@ -25,6 +25,7 @@ struct StageOptions {
   bool animate = false;             ///< `--animate`: frame i shows the clip at time + i · timeStep
   std::string clip;                 ///< name or number; empty: the first
   double time = 0.0, timeStep = 1.0 / 60.0;  ///< seconds
+  bool operator==(const StageOptions&) const = default;
 };
 
 /// A clip and the times at which frames show it. It starts over when it ends.

@@ -3,6 +3,7 @@
 #include <weir/core/text.h>
 #include <weir/image/metrics.h>
 #include <weir/render/lanes.h>
+#include <weir/render/reference_picture.h>
 #include <weir/render/render.h>
 #include <weir/render/verify.h>
 #include <weir/render/write_file.h>
@@ -23,8 +24,7 @@ double secondsSince(Clock::time_point start) {
 constexpr uint32_t kCoarse = 4;  ///< fine tiles along the side of a coarse one
 
 void checkOptions(const VerifyOptions& o) {
-  if (o.width == 0 || o.height == 0 || o.width > 16384 || o.height > 16384)
-    throw InputError(fmt::format("--size {}x{}: each side must be 1 … 16384", o.width, o.height));
+  requireSize(o.width, o.height);
   if (o.frames == 0) throw InputError("--frames must be at least 1");
   requireFrameNumbers(o.firstFrame, "--frames", o.frames);
   if (o.restarts < 2) throw InputError(fmt::format("--restarts {}: must be at least 2", o.restarts));
@@ -68,32 +68,6 @@ void checkOptions(const VerifyOptions& o) {
                                                                {"--reference", o.reference},
                                                                {"--reference-stderr", o.referenceError},
                                                                {"--reference-graph", o.referenceGraph}});
-}
-
-void requirePicture(const graph::CompiledGraph& graph, const std::string& file, const std::string& output) {
-  std::vector<std::string> known;
-  for (const graph::GraphOutput& each : graph.outputs) known.push_back(each.name);
-  const graph::GraphOutput* found = graph.findOutput(output);
-  if (found == nullptr) {
-    const std::string nearest = nearestName(output, known);
-    throw InputError(fmt::format("graph {} has no output '{}'{}", file, output,
-                                 nearest.empty() ? "" : " (nearest: '" + nearest + "')"));
-  }
-  if (graph.resources[found->resource].type.kind != PortKind::Image)
-    throw InputError(fmt::format("output '{}' of graph {} is a buffer, not a picture", output, file));
-}
-
-image::Picture finitePicture(const std::string& file, const VerifyOptions& o) {
-  if (image::fileKind(file) == image::FileKind::Png)
-    throw InputError(fmt::format("'{}' is a PNG: display values are no reference for radiance", file));
-  image::Picture picture = image::readPicture(file);
-  if (picture.width != o.width || picture.height != o.height)
-    throw InputError(
-        fmt::format("'{}' is {}x{} pixels, --size {}x{}", file, picture.width, picture.height, o.width, o.height));
-  if (const image::NonFinite bad = image::findNonFinite(picture); bad.pixels > 0)
-    throw InputError(
-        fmt::format("'{}' has {} pixels that are not finite, the first at {}, {}", file, bad.pixels, bad.x, bad.y));
-  return picture;
 }
 
 uint64_t restartsOf(const image::Picture& picture) {
@@ -145,10 +119,10 @@ void requireStillPixels(const std::string& file, const image::Picture& picture) 
 
 FileReference readReference(const VerifyOptions& o) {
   FileReference r;
-  r.picture = finitePicture(o.reference, o);
+  r.picture = readRadiance(o.reference, o.width, o.height);
   if (!o.referenceExact) requireStillPixels(o.reference, r.picture);
   if (!o.referenceError.empty()) {
-    r.error = finitePicture(o.referenceError, o);
+    r.error = readRadiance(o.referenceError, o.width, o.height);
     requireStillPixels(o.referenceError, r.error);
     const auto conflicts = image::attributeConflicts(r.error, r.picture);
     if (!conflicts.empty())
@@ -159,19 +133,6 @@ FileReference readReference(const VerifyOptions& o) {
     r.kind = ReferenceKind::Scatter;
   }
   return r;
-}
-
-void requireSameSubject(const VerifyOptions& o, const Stage& stage, const image::Picture& reference) {
-  image::Picture own;
-  own.attributes = {{"weir.scene", stage.sceneLabel},
-                    {"weir.camera", stage.cameraLabel},
-                    {"weir.lights", stage.lightsLabel},
-                    {"weir.shading", stage.shadingLabel},
-                    {"weir.animation", animationOf(o, stage)}};
-  const std::vector<std::string> conflicts = image::attributeConflicts(own, reference);
-  if (!conflicts.empty())
-    throw InputError(fmt::format("'{}' shows something else than is rendered here:\n  {}", o.reference,
-                                 fmt::join(conflicts, "\n  ")));
 }
 
 image::Evidence fileEvidence(const VerifyOptions& o, const FileReference& r, const image::Picture& mean) {
@@ -261,7 +222,7 @@ Verification verify(const VerifyOptions& o) {
   laboratory.open(o.stage, o.device, static_cast<float>(o.width) / static_cast<float>(o.height));
   const Stage& stage = laboratory.stage();
   for (const std::string& warning : stage.scene.warnings) warn(warning);
-  if (!o.reference.empty()) requireSameSubject(o, stage, file.picture);
+  if (!o.reference.empty()) requireSameSubject(stage, animationOf(o, stage), o.reference, file.picture);
   v.device = laboratory.device().info().name;
   v.scene = stage.sceneLabel;
   v.lights = stage.lightsLabel;
