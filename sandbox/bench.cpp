@@ -31,7 +31,7 @@ struct Words {
   BenchPart part;  ///< of the command line
   std::string size = "1920x1080", crop, shard, scenes;
   std::vector<std::string> sweeps;
-  bool noFlip = false;
+  bool noFlip = false, floor = false;
 };
 
 /// Numbers with one character between them, and nothing else.
@@ -110,6 +110,7 @@ void print(const render::BenchRecord& r) {
 void run(const CLI::App& command, Words& words) {
   BenchOptions& o = words.options;
   o.settings.flip = !words.noFlip;
+  if (words.floor) o.floor = render::measureFloor;
   if (!words.crop.empty()) o.settings.crop = parseCrop(words.crop);
   if (!words.shard.empty()) parseShard(words.shard, o);
   if (o.out.empty()) throw InputError("--out FILE.json is required");
@@ -231,6 +232,8 @@ void addBenchCommand(CLI::App& app) {
   command->add_option("--seed", o.settings.seed, "Seed of the random numbers")->capture_default_str();
   addErrorOptions(*command, *words);
   command->add_option("--out", o.out, "FILE.json; FILE.csv and FILE.pictures are written beside it");
+  command->add_flag("--floor", words->floor,
+                    "Also measure what the rays and buffers of each configuration cost at the least");
   command->add_flag("--fresh", o.fresh, "Measure again what FILE.json has");
   command->add_option("--shard", words->shard,
                       "I/N: every N-th configuration from the I-th on, counted from 0");

@@ -299,6 +299,16 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
   const bool traces = kind == KernelKind::RayPipeline || kind == KernelKind::RayQuery;
   std::string s = extensions(kind == KernelKind::RayPipeline, kind == KernelKind::RayQuery);
   s += scene::traitDefines(k.traits);
+  if (const char* d = getenv("WEIR_DEFINES")) {
+    std::string word;
+    for (const char* c = d;; ++c) {
+      if (*c == ' ' || *c == 0) {
+        if (!word.empty()) s += "#define " + word.substr(0, word.find('=')) + " " + (word.find('=') == std::string::npos ? "1" : word.substr(word.find('=') + 1)) + "\n";
+        word.clear();
+        if (*c == 0) break;
+      } else word += *c;
+    }
+  }
   s += kStructs;
   s += sceneDeclarations(parts, k.sceneTextures, k.traits);
   s += previousDeclarations(parts, k.traits);

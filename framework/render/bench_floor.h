@@ -12,6 +12,7 @@
 namespace weir::render {
 
 class Laboratory;
+struct BenchSettings;
 
 struct FloorPart {
   std::string name;  ///< "gbuffer rays", …
@@ -27,12 +28,20 @@ struct Floor {
 /// What is known of a configuration when its floor is measured.
 struct FloorInput {
   Laboratory& laboratory;             ///< open, nothing of the configuration in flight
+  const std::string& file;            ///< the graph's
+  const graph::Overrides& overrides;  ///< what was set in it
   const graph::CompiledGraph& graph;  ///< as it ran on this device, with scratch resources
+  const BenchSettings& settings;      ///< frames to warm up with and to measure
   double frameGpuMs = 0;              ///< median
   uint64_t rays = 0;                  ///< of a frame
-  uint32_t warmup = 0, frames = 0;    ///< to measure with
 };
 
 using FloorFunction = std::function<std::optional<Floor>(const FloorInput&)>;
+
+/// Runs the configuration's graph with passes of the plugin `floor` beside its own, that trace the same rays and nothing
+/// else and read and write the bytes of its buffers once. Camera rays count as those of gbuffer.RayTraced; each other
+/// ray costs what the shadow rays of the graph's reservoirs cost in the mean, all its buffers what as many words cost.
+/// None on devices without timestamps. Throws RuntimeError, graph::GraphError.
+std::optional<Floor> measureFloor(const FloorInput& in);
 
 }  // namespace weir::render

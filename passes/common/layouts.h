@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 
 namespace weir::passes {
 
@@ -94,8 +95,8 @@ namespace weir::passes {
 /// A cache of visibility: 512 cells for each tile of 16 × 16 pixels.
 inline PortType visibilityTiles() {
   PortType t = perPixel<VisibilityCell>();
-  t.scaleDenominator = 16;
-  t.perPixel = 512;
+  t.scaleDenominator = getenv("WEIR_TILE") ? atoi(getenv("WEIR_TILE")) : 16;
+  t.perPixel = getenv("WEIR_CELLS") ? atoi(getenv("WEIR_CELLS")) : 512;
   return t;
 }
 

@@ -60,7 +60,8 @@ class Shade final : public Pass {
   void record(RecordContext& c) override;
 
  private:
-  Kernel kernel_;
+  Kernel kernel_, rays_;
+  bool split_ = false;
 };
 
 /// The input through which a pass learns what is likely seen.

@@ -1,5 +1,6 @@
 #include "common/layouts.h"
 #include "restir_di/restir_di.h"
+#include <cstdlib>
 
 namespace weir::passes {
 
@@ -18,12 +19,19 @@ void Shade::describe(PassDescription& d) {
 }
 
 void Shade::prepare(PrepareContext& c) {
+  split_ = getenv("WEIR_SHADESPLIT") != nullptr;
+  if (split_) {
+    kernel_ = c.kernel("shade.glsl");
+    rays_ = c.rayKernel("shade_visibility.glsl");
+    return;
+  }
   kernel_ = c.boolean("visibility") ? c.rayKernel("shade.glsl", {.defines = {{"FINAL_VISIBILITY", "1"}}})
                                     : c.kernel("shade.glsl");
 }
 
 void Shade::record(RecordContext& c) {
   c.launch(kernel_);
+  if (split_) c.launch(rays_);
 }
 
 }  // namespace weir::passes

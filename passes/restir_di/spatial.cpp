@@ -45,7 +45,7 @@ Kernel reuseKernel(PrepareContext& c, const char* file, KernelOptions options) {
   std::ranges::transform(mis, mis.begin(),
                          [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
   options.defines.emplace_back("MIS_" + mis, "1");
-  if (!c.boolean("visibilityRays")) return c.kernel(file, options);
+  if (!c.boolean("visibilityRays")) return getenv("WEIR_ORACLE") ? c.rayKernel(file, options) : c.kernel(file, options);
   options.defines.emplace_back("VISIBILITY_RAYS", "1");
   return c.rayKernel(file, options);
 }

@@ -15,7 +15,7 @@ void VisibilityCache::describe(PassDescription& d) {
 }
 
 void VisibilityCache::prepare(PrepareContext& c) {
-  kernel_ = c.kernel("learn_visibility.glsl", {.group = {.side = 16, .whole = true}});
+  kernel_ = c.kernel("learn_visibility.glsl", {.group = {.side = getenv("WEIR_TILE") ? uint32_t(atoi(getenv("WEIR_TILE"))) : 16u, .whole = true}});
 }
 
 void VisibilityCache::record(RecordContext& c) {

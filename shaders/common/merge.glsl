@@ -29,7 +29,12 @@ float nextChance();  // uniform in [0, 1), a new one each time
 uint mergingTile();  // of the merging pixel, in the cache of visibility
 
 // What is likely seen from the merging pixel is chosen rather. MIS weights never ask: they must not depend on what was found before.
+#ifdef ORACLE_V
+Surface oracleSurface;
+float preference(Reservoir r) { return max(ORACLE_V, traceVisibility(oracleSurface, evaluateLight(lightOf(r), r.place, oracleSurface.position))); }
+#else
 float preference(Reservoir r) { return guessVisibility(mergingTile(), lightOf(r)); }
+#endif
 
 #if defined(PREVIOUS_DOMAIN) && defined(SCENE_ANIMATED)
 LightSample lightThere(uint light, uint place, vec3 position) { 

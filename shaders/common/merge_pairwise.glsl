@@ -4,6 +4,9 @@
 // Visibility is part of p̂_j, not of p̂_c: hidden here is gone by the test at the end.
 Reservoir merge(Surface surface, Reservoir own) {
   const uint count = neighbourCount();
+#ifdef ORACLE_V
+  oracleSurface = surface;
+#endif
   float others = 0.0;
   for (uint i = 0u; i < count; ++i) others += neighbourReservoir(i).confidence;
   const float total = own.confidence + others;

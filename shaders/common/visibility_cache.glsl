@@ -7,7 +7,10 @@
 #include "mutants.glsl"
 #include "random_bits.glsl"
 
-const uint kCacheTile = 16u;
+#ifndef CACHE_TILE
+#define CACHE_TILE 16u
+#endif
+const uint kCacheTile = CACHE_TILE;
 
 uint cacheTile(uvec2 pixel) { return pixel.y / kCacheTile * ((frameWidth + kCacheTile - 1u) / kCacheTile) + pixel.x / kCacheTile; }
 

@@ -1,6 +1,7 @@
 // One ray a pixel, and what it met; ray_surfaces.glsl turns that into surfaces. Apart, since rays want many invocations in flight and
 // whatever reads textures wants registers.
 #include "trace.glsl"
+#include "camera.glsl"
 #include "gbuffer_jitter.glsl"
 
 void run(uvec2 pixel) {

@@ -12,7 +12,8 @@ const uint kPlain = 0x80000000u;  // a point light without a range: position and
 shared uvec4 pickPlace[kPicks];  // position, and the light's number
 shared uvec4 pickPower[kPicks];  // intensity, and the pick's density
 #ifdef has_in_visibility
-shared float pickGuess[kPicks];
+const uint kParts = 16u / kCacheTile;  // of a tile's side, with guesses of their own
+shared float pickGuess[kParts * kParts][kPicks];
 #endif
 
 void pickForTile(uvec2 pixel, uint tile, uint thread, uint turn) {
@@ -27,13 +28,21 @@ void pickForTile(uvec2 pixel, uint tile, uint thread, uint turn) {
   pickPlace[thread] = uvec4(floatBitsToUint(light.position), chosen | (plain ? kPlain : 0u));
   pickPower[thread] = uvec4(floatBitsToUint(light.radiance), floatBitsToUint(mixedPdf(light, param_uniformShare)));
 #ifdef has_in_visibility
-  pickGuess[thread] = guessVisibility(tile, chosen);
+  const uvec2 corner = gl_WorkGroupID.xy * 16u;
+  for (uint y = 0u; y < kParts; ++y)
+    for (uint x = 0u; x < kParts; ++x)
+      pickGuess[y * kParts + x][thread] = guessVisibility(cacheTile(corner + uvec2(x, y) * kCacheTile), chosen);
 #endif
 }
 
 // `count` of the picks: one in each of as many parts of the tile's, which begin at a random place, so that all are equally likely.
 void lookThrough(inout Selection selections[out_reservoirs_count], Surface surface, uint count, uint begin, inout Random random) {
+#ifdef has_in_visibility
+  const uvec2 of = gl_LocalInvocationID.xy / kCacheTile;
+  const uint part = of.y * kParts + of.x;
+#endif
   const uint step = (kPicks << 16u) / count;
+  const QuickTarget quick = quickTarget(surface);
   uvec4 words = uvec4(0u);
   for (uint i = 0u; i < count; ++i) {
     words = words.yzwx;
@@ -52,9 +61,13 @@ void lookThrough(inout Selection selections[out_reservoirs_count], Surface surfa
     } else {
       c = drawCandidate(sceneLights[chosen], nextBits4(random).xy, surface, random);
     }
+#ifdef EXACT_TARGET
     float target = targetFunction(surface, c.light);
+#else
+    float target = quickTargetOf(quick, surface, c.light);
+#endif
 #ifdef has_in_visibility
-    target *= pickGuess[at];
+    target *= pickGuess[part][at];
 #endif
     if (!(target > 0.0)) continue;
     // 1/M · p̂ / p, with p = pdf of the light times density on it.
@@ -97,7 +110,7 @@ void run(uvec2 pixel) {
   }
   if (!inside) return;
 #ifdef SCENE_ENVIRONMENT
-  if (lit) lookAlongBsdf(selections, surface, tile, random);
+  if (lit) lookAlongBsdf(selections, surface, cacheTile(pixel), random);
 #endif
   for (uint k = 0u; k < out_reservoirs_count; ++k)
     out_reservoirs[index * out_reservoirs_count + k] = lit ? finish(selections[k], 1.0) : emptyReservoir();
