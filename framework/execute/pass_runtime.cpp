@@ -78,7 +78,7 @@ std::vector<uint32_t> PassRuntime::compile(KernelKind kind, shader::Stage stage,
                                            const KernelOptions& options) {
   shader::CompileRequest r;
   r.name = "prelude of " + compiled().name;
-  r.source = kernelSource(interface_, kind, file, options.group);
+  r.source = kernelSource(interface_, kind, file, options);
   r.stage = stage;
   const std::filesystem::path own = shared_.services.registry->shaderFolder(compiled().type);
   if (!own.empty()) r.includeFolders.push_back(own.string());
@@ -177,7 +177,7 @@ Kernel PassRuntime::addKernel(KernelKind kind, const std::string& file, const Ke
   } else {
     const auto spirv = compile(kind, shader::Stage::Compute, file, options);
     kernel.pipeline = library.get(pipelineKey(kind, {&spirv}), [&] {
-      return Pipeline::compute(device(), pipelineLayout_, spirv, constants_, options.group.side, name);
+      return Pipeline::compute(device(), pipelineLayout_, spirv, constants_, options.linear ? 0 : options.group.side, name);
     });
   }
   stages_ |= kernel.pipeline->stages();

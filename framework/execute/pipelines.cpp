@@ -1,6 +1,7 @@
 #include <weir/execute/pipelines.h>
 #include <weir/execute/prelude.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <utility>
@@ -256,6 +257,10 @@ Pipeline Pipeline::raster(const gpu::Device& device, VkPipelineLayout layout, st
 void Pipeline::launch(VkCommandBuffer commands, uint32_t width, uint32_t height) const {
   if (bindPoint_ == VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR) {
     vkCmdTraceRaysKHR(commands, &generation_, &miss_, &hit_, &callable_, width, height, 1);
+  } else if (groupSide_ == 0) {
+    // No dimension may have more groups than this on every device.
+    const uint32_t groups = (width + kRowGroup - 1) / kRowGroup, most = 65535;
+    vkCmdDispatch(commands, std::min(groups, most), (groups + most - 1) / most, 1);
   } else {
     vkCmdDispatch(commands, (width + groupSide_ - 1) / groupSide_, (height + groupSide_ - 1) / groupSide_, 1);
   }

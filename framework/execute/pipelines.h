@@ -28,7 +28,7 @@ struct HitShaders {
 class Pipeline {
  public:
   Pipeline() = default;
-  /// `groupSide` is that of the shader's workgroups.
+  /// `groupSide` is that of the shader's workgroups; 0: linear ones of kRowGroup (prelude.h).
   static Pipeline compute(const gpu::Device& device, VkPipelineLayout layout, std::span<const uint32_t> spirv,
                           const Specialization& constants, uint32_t groupSide, const std::string& name);
   static Pipeline rays(const gpu::Device& device, VkPipelineLayout layout, std::span<const uint32_t> rayGeneration,

@@ -293,22 +293,12 @@ uint32_t paramBits(const ParamDescription& description, const ParamValue& value)
 }
 
 std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::string& file,
-                         const Group& group) {
+                         const KernelOptions& options) {
   const PassDescription& d = *k.pass->description;
   const SceneParts parts = partsOf(d, k.traits);
   const bool traces = kind == KernelKind::RayPipeline || kind == KernelKind::RayQuery;
   std::string s = extensions(kind == KernelKind::RayPipeline, kind == KernelKind::RayQuery);
   s += scene::traitDefines(k.traits);
-  if (const char* d = getenv("WEIR_DEFINES")) {
-    std::string word;
-    for (const char* c = d;; ++c) {
-      if (*c == ' ' || *c == 0) {
-        if (!word.empty()) s += "#define " + word.substr(0, word.find('=')) + " " + (word.find('=') == std::string::npos ? "1" : word.substr(word.find('=') + 1)) + "\n";
-        word.clear();
-        if (*c == 0) break;
-      } else word += *c;
-    }
-  }
   s += kStructs;
   s += sceneDeclarations(parts, k.sceneTextures, k.traits);
   s += previousDeclarations(parts, k.traits);
@@ -350,9 +340,6 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
 
   switch (kind) {
     case KernelKind::RayPipeline:
-      if (getenv("WEIR_SWIZZLE"))
-        s += "void main() {\n  begin();\n  const uint i = gl_LaunchIDEXT.y * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x, w = i / 32u, l = i % 32u, tx = gl_LaunchSizeEXT.x / 8u;\n  run(uvec2(w % tx * 8u + l % 8u, w / tx * 4u + l / 8u));\n}\n";
-      else
       s += "void main() {\n  begin();\n  run(gl_LaunchIDEXT.xy);\n}\n";
       break;
     case KernelKind::Vertex:
@@ -362,9 +349,15 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
       s += fragmentMain();
       break;
     default:
-      s += fmt::format("layout(local_size_x = {0}, local_size_y = {0}) in;\n", group.side);
+      if (options.linear) {
+        s += fmt::format("layout(local_size_x = {}) in;\nvoid main() {{\n  begin();\n", kRowGroup);
+        s += fmt::format("  const uint id = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * {}u + gl_LocalInvocationID.x;\n", kRowGroup);
+        s += "  if (id < launchSize.x) run(uvec2(id, 0u));\n}\n";
+        break;
+      }
+      s += fmt::format("layout(local_size_x = {0}, local_size_y = {0}) in;\n", options.group.side);
       s += "void main() {\n  begin();\n";
-      if (!group.whole) s += "  if (all(lessThan(gl_GlobalInvocationID.xy, launchSize)))";
+      if (!options.group.whole) s += "  if (all(lessThan(gl_GlobalInvocationID.xy, launchSize)))";
       s += "  run(gl_GlobalInvocationID.xy);\n}\n";
   }
   return s;

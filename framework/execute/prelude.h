@@ -33,9 +33,9 @@ struct KernelInterface {
 
 enum class KernelKind : uint8_t { Compute, RayPipeline, RayQuery, Vertex, Fragment };
 
-/// Full source of a kernel: prelude, #include of `file`, main(). `group` is that of compute kernels.
+/// Full source of a kernel: prelude, #include of `file`, main(). Of the options, how it is launched counts.
 std::string kernelSource(const KernelInterface& interface, KernelKind kind, const std::string& file,
-                         const Group& group = {});
+                         const KernelOptions& options = {});
 
 /// Full source of one of the tracing interface's own hit and miss shaders: the scene, no ports.
 std::string hitShaderSource(const std::string& file, uint32_t sceneTextures, const scene::SceneTraits& traits);
@@ -53,6 +53,7 @@ std::vector<const ParamDescription*> specialParams(const PassDescription& descri
 /// A parameter's 32 bits as the shader reads them (an Enum's index, a bool's 0 or 1).
 uint32_t paramBits(const ParamDescription& description, const ParamValue& value);
 
+inline constexpr uint32_t kRowGroup = 256;  ///< invocations of a workgroup in linear launches
 inline constexpr uint32_t kLaunchBytes = 16;  ///< size, index, stream
 inline constexpr uint32_t kPushLimit = 128;   ///< what every Vulkan device has
 

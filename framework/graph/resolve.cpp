@@ -19,9 +19,11 @@ class Resolver {
         ways_[n].resize(node.type->outputs.size());
     for (Node& node : checked_.nodes) {
       if (!node.enabled()) continue;  // what a disabled pass reads is read by nobody
-      for (Link& link : node.links)
+      for (Link& link : node.links) {
+        if (staysOpen(node, link)) continue;
         link.resolved = follow(link.written, link.entry->line,
                                [&] { return fmt::format("passes.{}.inputs.{}", node.name(), link.entry->port); });
+      }
     }
     for (OutputLink& output : checked_.outputs)
       output.resolved = follow(output.written, output.entry->line, [&] { return "outputs." + output.entry->name; });
@@ -46,6 +48,12 @@ class Resolver {
     Source at, next;
   };
 
+  /// An optional input, and what it reads is there only while a pass is enabled that isn't.
+  bool staysOpen(const Node& node, const Link& link) const {
+    if (link.input == kNone || !link.written.known() || enabled(link.written) || isProvided(link.written)) return false;
+    const PortDescription& output = checked_.nodes[link.written.node].type->outputs[link.written.output];
+    return output.absentWhenDisabled && !node.type->inputs[link.input].required;
+  }
   bool enabled(const Source& source) const { return checked_.nodes[source.node].enabled(); }
   /// Whether the host brings the very thing: then it does not matter what stands for it otherwise.
   bool isProvided(const Source& source) const {

@@ -62,6 +62,9 @@ Port& Port::doc(std::string text) {
 Port& Port::optional() {
   return d_.required = false, *this;
 }
+Port& Port::absentWhenDisabled() {
+  return d_.absentWhenDisabled = true, *this;
+}
 Port& Port::passesThrough(std::string input) {
   return d_.passesThrough = std::move(input), *this;
 }

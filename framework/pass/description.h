@@ -126,6 +126,7 @@ struct PortDescription {
   std::string doc;
   bool required = true;       ///< inputs: must be connected
   std::string passesThrough;  ///< outputs: the input that stands for this output when the pass is disabled
+  bool absentWhenDisabled = false;  ///< outputs: then nothing does, and optional inputs that read it are left open
   Meaning meaning = Meaning::Data;
 };
 
@@ -177,6 +178,7 @@ class PassDescription {
     Port& doc(std::string text);
     Port& optional();                        ///< inputs
     Port& passesThrough(std::string input);  ///< outputs
+    Port& absentWhenDisabled();              ///< outputs that pass nothing through
     Port& times(std::string intParam);       ///< outputs: elements a pixel = that parameter
     Port& countOf(std::string input);        ///< outputs: elements a pixel as in that input
     Port& anyCount();                        ///< inputs: any number of elements a pixel

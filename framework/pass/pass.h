@@ -34,6 +34,9 @@ struct KernelOptions {
   /// Shader files that exist only in memory, found by #include "name".
   std::vector<std::pair<std::string, std::string>> sources;
   Group group;  ///< compute kernels only
+  /// The launch is a row of `width` ids (x, 0), `height` 1, and ids next to each other run together, whatever the
+  /// device; rays too.
+  bool linear = false;
 };
 
 /// A constant texture of the pass's own, sampled by the shader as `texture_<name>`. RGBA float, clamped.

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 
 namespace weir::passes {
 
@@ -29,11 +28,6 @@ struct Reservoir {
   uint32_t place;    ///< where on the light, 2 × 16 bits
   float weight;      ///< W, the unbiased contribution weight: per m² for triangles; 0: no sample
   float confidence;  ///< c, in fresh frames
-};
-
-/// How often a light was seen of late from a tile of pixels: see shaders/common/visibility_cache.glsl.
-struct VisibilityCell {
-  uint32_t bits;
 };
 
 /// Running mean of a picture, compensated so that a million frames lose nothing.
@@ -68,13 +62,6 @@ struct LayoutOf<passes::Reservoir> {
 };
 
 template <>
-struct LayoutOf<passes::VisibilityCell> {
-  static constexpr const char* name = "VisibilityCell";
-  static constexpr uint32_t version = 1, emptyWord = 0;
-  static constexpr std::array<Field, 1> fields{{{"uint", "bits"}}};
-};
-
-template <>
 struct LayoutOf<passes::MeanState> {
   static constexpr const char* name = "MeanState";
   static constexpr uint32_t version = 1, emptyWord = 0;
@@ -89,15 +76,3 @@ struct LayoutOf<passes::MeanState> {
 };
 
 }  // namespace weir
-
-namespace weir::passes {
-
-/// A cache of visibility: 512 cells for each tile of 16 × 16 pixels.
-inline PortType visibilityTiles() {
-  PortType t = perPixel<VisibilityCell>();
-  t.scaleDenominator = getenv("WEIR_TILE") ? atoi(getenv("WEIR_TILE")) : 16;
-  t.perPixel = getenv("WEIR_CELLS") ? atoi(getenv("WEIR_CELLS")) : 512;
-  return t;
-}
-
-}  // namespace weir::passes

@@ -16,8 +16,7 @@ class RayTraced final : public Pass {
   void record(RecordContext& c) override;
 
  private:
-  Kernel kernel_, surfaces_;
-  bool split_ = false;
+  Kernel kernel_;
 };
 
 /// Rasterises triangle numbers, then resolves them to surfaces in a compute shader. Needs no ray tracing.

@@ -1,4 +1,5 @@
 #include "common/layouts.h"
+#include "restir_di/ray_order.h"
 #include "restir_di/restir_di.h"
 
 namespace weir::passes {
@@ -6,7 +7,6 @@ namespace weir::passes {
 void Initial::describe(PassDescription& d) {
   d.doc("Light candidates by power, resampled into each pixel's reservoirs (RIS)");
   d.input("surface", perPixel<PackedSurface>());
-  describePreference(d);
   d.output("reservoirs", perPixel<Reservoir>()).times("samples").doc("One or more reservoirs a pixel");
   d.param("candidates", 32).range(1, 1024).doc("Lights that each pixel looks at");
   d.param("bsdfCandidates", 1)
@@ -55,9 +55,14 @@ void Initial::prepare(PrepareContext& c) {
     return;
   }
   if (c.text("sharing") == "tile") {
-    kernel_ = c.kernel("initial_tiles.glsl", {.group = {.side = 16, .whole = true}});
     separate_ = c.boolean("visibility");
-    if (separate_) visibility_ = c.rayKernel("initial_visibility.glsl");
+    if (!separate_) {
+      kernel_ = c.kernel("initial_tiles.glsl", {.group = {.side = kTileSide, .whole = true}});
+      return;
+    }
+    c.scratch("order", rayOrder());
+    kernel_ = c.kernel("initial_tiles.glsl", ordersRays());
+    visibility_ = c.rayKernel("initial_visibility.glsl", {.linear = true});
     return;
   }
   kernel_ = c.boolean("visibility") ? c.rayKernel("initial.glsl") : c.kernel("initial.glsl");
@@ -65,7 +70,7 @@ void Initial::prepare(PrepareContext& c) {
 
 void Initial::record(RecordContext& c) {
   c.launch(kernel_);
-  if (separate_) c.launch(visibility_);
+  if (separate_) launchRays(c, visibility_);
 }
 
 }  // namespace weir::passes

@@ -19,17 +19,6 @@ class Initial final : public Pass {
   bool separate_ = false;  ///< rays are shot by a launch of their own
 };
 
-/// Learns which lights are seen from where, for passes that prefer such.
-class VisibilityCache final : public Pass {
- public:
-  static void describe(PassDescription& d);
-  void prepare(PrepareContext& c) override;
-  void record(RecordContext& c) override;
-
- private:
-  Kernel kernel_;
-};
-
 /// Merges each pixel's reservoirs with those its surface had last frame.
 class Temporal final : public Pass {
  public:
@@ -61,11 +50,9 @@ class Shade final : public Pass {
 
  private:
   Kernel kernel_, rays_;
-  bool split_ = false;
+  bool visibility_ = false;
 };
 
-/// The input through which a pass learns what is likely seen.
-void describePreference(PassDescription& d);
 /// Parameters that both kinds of reuse share: MIS weights and what counts as a similar surface.
 void describeReuse(PassDescription& d);
 /// A kernel that traces rays only where the parameters ask for them.

@@ -1,6 +1,6 @@
 #include "common/layouts.h"
+#include "restir_di/ray_order.h"
 #include "restir_di/restir_di.h"
-#include <cstdlib>
 
 namespace weir::passes {
 
@@ -9,9 +9,9 @@ void Shade::describe(PassDescription& d) {
   d.input("surface", perPixel<PackedSurface>());
   d.input("emission", storageImage(Format::RGBA32F));
   d.input("reservoirs", perPixel<Reservoir>()).anyCount();
-  d.output("tested", perPixel<Reservoir>())
-      .countOf("reservoirs")
-      .doc("The reservoirs with what the final rays found, for a VisibilityCache");
+  d.input("light", storageImage(Format::RGBA32F))
+      .optional()
+      .doc("Spatial's: with it the chosen sample says only how much of the light of all merged ones is hidden");
   d.output("color", storageImage(Format::RGBA32F)).radiance();
   d.param("visibility", true).specialises().doc("Shoot the final shadow ray; without it, light goes through walls");
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
@@ -19,19 +19,21 @@ void Shade::describe(PassDescription& d) {
 }
 
 void Shade::prepare(PrepareContext& c) {
-  split_ = getenv("WEIR_SHADESPLIT") != nullptr;
-  if (split_) {
+  visibility_ = c.boolean("visibility");
+  if (!visibility_) {
     kernel_ = c.kernel("shade.glsl");
-    rays_ = c.rayKernel("shade_visibility.glsl");
     return;
   }
-  kernel_ = c.boolean("visibility") ? c.rayKernel("shade.glsl", {.defines = {{"FINAL_VISIBILITY", "1"}}})
-                                    : c.kernel("shade.glsl");
+  KernelOptions options = ordersRays();
+  options.defines.emplace_back("FINAL_VISIBILITY", "1");
+  c.scratch("order", rayOrder());
+  kernel_ = c.kernel("shade.glsl", options);
+  rays_ = c.rayKernel("shade_visibility.glsl", {.linear = true});
 }
 
 void Shade::record(RecordContext& c) {
   c.launch(kernel_);
-  if (split_) c.launch(rays_);
+  if (visibility_) launchRays(c, rays_);
 }
 
 }  // namespace weir::passes

@@ -7,12 +7,6 @@
 
 namespace weir::passes {
 
-void describePreference(PassDescription& d) {
-  d.input("visibility", visibilityTiles())
-      .optional()
-      .doc("A VisibilityCache's, @previous: samples that are likely seen are chosen rather");
-}
-
 void describeReuse(PassDescription& d) {
   d.param("mis", "pairwise")
       .oneOf({"biased", "z", "balance", "pairwise"})
@@ -33,6 +27,10 @@ void describeReuse(PassDescription& d) {
       .doc(
           "Include visibility in the MIS weights and retest the survivor; without, reuse is unbiased only if "
           "Initial.visibility is off and Initial.bsdfRays 0");
+  d.param("sparseRays", true)
+      .doc(
+          "With visibilityRays, by pairwise: ask one neighbour alone, picked by chance, whether it sees the own sample, "
+          "and let it stand for all; else a ray for each neighbour. Unbiased either way");
   d.param("depthThreshold", 0.1f).range(0, 10).doc("Greatest difference of distance, relative to the distance");
   d.param("normalThreshold", 25.0f).range(0, 180).unit("degrees").doc("Greatest angle between shading normals");
   d.param("albedoThreshold", 1.0f)
@@ -45,7 +43,7 @@ Kernel reuseKernel(PrepareContext& c, const char* file, KernelOptions options) {
   std::ranges::transform(mis, mis.begin(),
                          [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
   options.defines.emplace_back("MIS_" + mis, "1");
-  if (!c.boolean("visibilityRays")) return getenv("WEIR_ORACLE") ? c.rayKernel(file, options) : c.kernel(file, options);
+  if (!c.boolean("visibilityRays")) return c.kernel(file, options);
   options.defines.emplace_back("VISIBILITY_RAYS", "1");
   return c.rayKernel(file, options);
 }
@@ -54,8 +52,11 @@ void Spatial::describe(PassDescription& d) {
   d.doc("Merges each pixel's reservoirs with those of pixels around it");
   d.input("surface", perPixel<PackedSurface>());
   d.input("reservoirs", perPixel<Reservoir>()).anyCount();
-  describePreference(d);
   d.output("reservoirs", perPixel<Reservoir>()).countOf("reservoirs").passesThrough("reservoirs");
+  d.output("light", storageImage(Format::RGBA32F))
+      .radiance()
+      .absentWhenDisabled()
+      .doc("Of all that each pixel merged what it would send to the viewer if all were seen, for Shade");
   d.param("iterations", 1).range(1, 4).doc("How often; each works on what the one before it left");
   d.param("neighbours", 4).range(1, 16).doc("Pixels that are tried in each iteration");
   d.param("radius", 30.0f).range(1, 1024).unit("px").doc("They lie uniformly in a disc of this radius");

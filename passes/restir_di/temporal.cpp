@@ -10,7 +10,6 @@ void Temporal::describe(PassDescription& d) {
   d.input("previousSurface", perPixel<PackedSurface>()).doc("The surface port, @previous");
   d.input("reservoirs", perPixel<Reservoir>()).anyCount();
   d.input("history", perPixel<Reservoir>()).anyCount().doc("The last reuse's reservoirs, @previous");
-  describePreference(d);
   d.output("reservoirs", perPixel<Reservoir>()).countOf("reservoirs").passesThrough("reservoirs");
   d.param("confidenceCap", 20).range(1, 1024).unit("frames").doc("Most that the history counts, in fresh frames");
   describeReuse(d);

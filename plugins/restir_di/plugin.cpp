@@ -4,5 +4,4 @@
 
 WEIR_PLUGIN("restir_di", weir::passEntry<weir::passes::Initial>("Initial"),
             weir::passEntry<weir::passes::Temporal>("Temporal"), weir::passEntry<weir::passes::Spatial>("Spatial"),
-            weir::passEntry<weir::passes::Shade>("Shade"),
-            weir::passEntry<weir::passes::VisibilityCache>("VisibilityCache"))
+            weir::passEntry<weir::passes::Shade>("Shade"))

@@ -18,7 +18,6 @@
 
 #include "mutants.glsl"
 #include "reservoir.glsl"
-#include "visibility_cache.glsl"
 
 // Defined by the pass. A neighbour's reservoir has the confidence with which it counts here.
 uint neighbourCount();
@@ -26,15 +25,13 @@ Reservoir neighbourReservoir(uint i);
 Surface neighbourSurface(uint i);
 bool isThisSurface(uint i);  // that neighbour is the merging surface itself, seen as it is now: what is known there is known here
 float nextChance();  // uniform in [0, 1), a new one each time
-uint mergingTile();  // of the merging pixel, in the cache of visibility
 
-// What is likely seen from the merging pixel is chosen rather. MIS weights never ask: they must not depend on what was found before.
-#ifdef ORACLE_V
-Surface oracleSurface;
-float preference(Reservoir r) { return max(ORACLE_V, traceVisibility(oracleSurface, evaluateLight(lightOf(r), r.place, oracleSurface.position))); }
-#else
-float preference(Reservoir r) { return guessVisibility(mergingTile(), lightOf(r)); }
-#endif
+// Σ m_i f(y_i) W_i of all that were merged, without their visibility: what is chosen from them is one of its terms, blown up to stand for
+// all. Shade keeps the sum where the chosen one is seen.
+vec3 mergedLight;
+
+// Offers a sample with its part m of the MIS weights and its contribution weight W here.
+bool offerMerged(inout Selection selection, Reservoir r, vec3 f, float m, float W, bool seen, float chance);
 
 #if defined(PREVIOUS_DOMAIN) && defined(SCENE_ANIMATED)
 LightSample lightThere(uint light, uint place, vec3 position) { 
@@ -70,11 +67,34 @@ float neighbourTarget(Surface neighbour, LightSample light, bool seen) {
   return target;
 }
 
+bool offerMerged(inout Selection selection, Reservoir r, vec3 f, float m, float W, bool seen, float chance) {
+  const float target = luminance(f), weight = m * target * W;
+  if (weight > 0.0 && !isinf(weight)) mergedLight += f * (m * W);
+  return offer(selection, lightOf(r), r.place, target, weight, seen, chance);
+}
+
+// f W of what was chosen, which stands for all.
+vec3 standing(Reservoir r, Surface surface) {
+  return isNull(r) ? vec3(0.0) : unshadowed(surface, evaluateLight(lightOf(r), r.place, surface.position)) * r.weight;
+}
+
 // What was chosen, tested at its new pixel where the weights count on that.
-Reservoir finishMerge(Selection selection, Surface surface, float confidence) {
+Reservoir finishMerge(Selection selection, Surface surface, float confidence, Reservoir own) {
   Reservoir merged = finish(selection, confidence);
+#ifdef wanted_out_light
+#ifdef MIS_Z
+  const bool alone = true;  // the others' Z are not known
+#else
+  const bool alone = isNull(own);  // where nothing of its own was seen, others' samples are likely hidden, too
+#endif
+  if (alone) mergedLight = standing(merged, surface);
+#endif
 #ifdef VISIBILITY_RAYS
+  const Reservoir chosen = merged;
   if (MUTANT(7, false, true)) testVisibility(merged, surface);
+#ifdef wanted_out_light
+  if (MUTANT(71, false, isNull(merged))) mergedLight -= standing(chosen, surface);
+#endif
 #endif
   return merged;
 }

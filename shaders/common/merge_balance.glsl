@@ -12,7 +12,8 @@ Reservoir merge(Surface surface, Reservoir own) {
     total += r.confidence;
     if (isNull(r)) continue;
     const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
-    const float target = targetFunction(surface, here);
+    const vec3 f = unshadowed(surface, here);
+    const float target = luminance(f);
     if (!(target > 0.0)) continue;
     // Visibility is part of the others' targets, not of this pixel's: hidden here is gone by the test at the end.
     float sum = own.confidence * target;
@@ -20,14 +21,13 @@ Reservoir merge(Surface surface, Reservoir own) {
     for (uint j = 0u; j < count; ++j) {
       const Surface neighbour = neighbourSurface(j);
       const LightSample there = lightThere(lightOf(r), r.place, neighbour.position);
-      const float theirs = neighbourReservoir(j).confidence * neighbourTarget(neighbour, there, isSeen(r) && (j == i || (isOwn && isThisSurface(j)))) *
-                           measureThere(there, here);
+      const bool seen = isSeen(r) && (j == i || (isOwn && isThisSurface(j)));
+      const float theirs = neighbourReservoir(j).confidence * neighbourTarget(neighbour, there, seen) * measureThere(there, here);
       sum += MUTANT(22, j == i ? theirs : 0.0, theirs);
       if (j == i) itsOwn = theirs;
     }
     const float weight = isOwn ? r.weight : weightHere(r, here);
-    const float preferred = target * preference(r);
-    offer(selection, lightOf(r), r.place, preferred, itsOwn / sum * preferred * weight, isSeen(r) && (isOwn || isThisSurface(i)), chance);
+    offerMerged(selection, r, f, itsOwn / sum, weight, isSeen(r) && (isOwn || isThisSurface(i)), chance);
   }
-  return finishMerge(selection, surface, total);
+  return finishMerge(selection, surface, total, own);
 }

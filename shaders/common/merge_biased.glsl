@@ -10,17 +10,13 @@ Reservoir merge(Surface surface, Reservoir own) {
     const float chance = nextChance();
     if (isNull(r)) continue;
     const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
-    const float target = targetFunction(surface, here);
-    if (!(target > 0.0)) continue;
-    const float preferred = target * preference(r);
-    offer(selection, lightOf(r), r.place, preferred, r.confidence / total * preferred * weightHere(r, here),
-          isSeen(r) && isThisSurface(i), chance);
+    offerMerged(selection, r, unshadowed(surface, here), r.confidence / total, weightHere(r, here), isSeen(r) && isThisSurface(i),
+                chance);
   }
   const float chance = nextChance();
   if (!isNull(own)) {
-    const float target = targetFunction(surface, evaluateLight(lightOf(own), own.place, surface.position)) * preference(own);
-    const float weight = own.confidence / total;
-    offer(selection, lightOf(own), own.place, target, weight * target * own.weight, isSeen(own), chance);
+    const vec3 f = unshadowed(surface, evaluateLight(lightOf(own), own.place, surface.position));
+    offerMerged(selection, own, f, own.confidence / total, own.weight, isSeen(own), chance);
   }
-  return finishMerge(selection, surface, total);
+  return finishMerge(selection, surface, total, own);
 }

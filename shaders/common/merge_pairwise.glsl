@@ -4,25 +4,28 @@
 // Visibility is part of p̂_j, not of p̂_c: hidden here is gone by the test at the end.
 Reservoir merge(Surface surface, Reservoir own) {
   const uint count = neighbourCount();
-#ifdef ORACLE_V
-  oracleSurface = surface;
-#endif
   float others = 0.0;
   for (uint i = 0u; i < count; ++i) others += neighbourReservoir(i).confidence;
   const float total = own.confidence + others;
   LightSample ownLight;
-  float ownTarget = 0.0;
+  vec3 ownLit = vec3(0.0);
   if (!isNull(own)) {
     ownLight = evaluateLight(lightOf(own), own.place, surface.position);
-    ownTarget = targetFunction(surface, ownLight);
+    ownLit = unshadowed(surface, ownLight);
   }
+  const float ownTarget = luminance(ownLit);
   float ownMis = own.confidence / total;
+  // m_c is a sum over neighbours. With rays one of them, picked by chance, stands for all: its mean is the same, and W is linear in m_c.
+  uint asked = count;  // `count`: all
+#ifdef VISIBILITY_RAYS
+  if (param_sparseRays && count > 1u) asked = min(uint(nextChance() * float(count)), count - 1u);
+#endif
   Selection selection = noSelection();
   for (uint i = 0u; i < count; ++i) {
     const Reservoir r = neighbourReservoir(i);
     const Surface neighbour = neighbourSurface(i);
     const float chance = nextChance();
-    if (ownTarget > 0.0) {
+    if (ownTarget > 0.0 && (asked == count || asked == i)) {
       Surface paired = neighbour;
 #ifdef WEIR_MUTANT
       paired.view = MUTANT(8, surface.view, paired.view);
@@ -32,24 +35,24 @@ Reservoir merge(Surface surface, Reservoir own) {
       const LightSample there = lightThere(lightOf(own), own.place, neighbour.position);
       const float here = own.confidence * ownTarget;
       const float theirs = others * neighbourTarget(paired, there, isSeen(own) && isThisSurface(i)) * measureThere(there, ownLight);
-      ownMis += MUTANT(17, 0.0, r.confidence / total * (here / (here + theirs)));
+      const float part = MUTANT(17, 0.0, r.confidence / total * (here / (here + theirs)));
+      ownMis += asked == count ? part : part * MUTANT(72, 1.0, float(count));
     }
     if (isNull(r)) continue;
     const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
-    const float target = targetFunction(surface, here);
+    const vec3 f = unshadowed(surface, here);
+    const float target = luminance(f);
     if (!(target > 0.0)) continue;
     float weight = r.confidence / total;
     const LightSample there = lightThere(lightOf(r), r.place, neighbour.position);
     const float theirs = MUTANT(18, r.confidence, others) * neighbourTarget(neighbour, there, isSeen(r)) * measureThere(there, here);
     weight *= MUTANT(21, 1.0, theirs / (own.confidence * target + theirs));
-    const float preferred = preference(r);
-    offer(selection, lightOf(r), r.place, target * preferred,
-          weight * MUTANT(19, targetFunction(neighbour, there), target) * preferred * weightHere(r, here), MUTANT(20, isSeen(r), isSeen(r) && isThisSurface(i)), chance);
+    weight *= MUTANT(19, targetFunction(neighbour, there) / target, 1.0);
+    offerMerged(selection, r, f, weight, weightHere(r, here), isSeen(r) && MUTANT(20, true, isThisSurface(i)), chance);
   }
   const float chance = nextChance();
   if (ownTarget > 0.0) {
-    ownTarget *= preference(own);
-    offer(selection, lightOf(own), own.place, ownTarget, ownMis * ownTarget * own.weight, isSeen(own), chance);
+    offerMerged(selection, own, ownLit, ownMis, own.weight, isSeen(own), chance);
   }
-  return finishMerge(selection, surface, total);
+  return finishMerge(selection, surface, total, own);
 }

@@ -13,33 +13,23 @@ Reservoir merge(Surface surface, Reservoir own) {
   const float threshold = own.confidence > 0.0 ? param_zThreshold : 0.0;
   uint from = count;  // whose sample was chosen; `count`: the own one
   bool seenThere = false;
-  float chosenTarget = 0.0;  // p̂_c of what was chosen
   for (uint i = 0u; i < count; ++i) {
     const Reservoir r = neighbourReservoir(i);
     const float chance = nextChance();
     if (isNull(r)) continue;
     const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);
-    const float target = targetFunction(surface, here);
-    if (!(target > 0.0)) continue;
-    const float preferred = target * preference(r);
-    const float weight = r.confidence / total * preferred * weightHere(r, here);
-    if (offer(selection, lightOf(r), r.place, preferred, weight, isSeen(r) && isThisSurface(i), chance)) {
-      chosenTarget = target;
+    const bool seen = isSeen(r) && isThisSurface(i);
+    if (offerMerged(selection, r, unshadowed(surface, here), r.confidence / total, weightHere(r, here), seen, chance)) {
       from = i;
       seenThere = isSeen(r);
     }
   }
   const float chance = nextChance();
   if (!isNull(own)) {
-    const float target = targetFunction(surface, evaluateLight(lightOf(own), own.place, surface.position));
-    const float preferred = target * preference(own);
-    const float weight = own.confidence / total * preferred * own.weight;
-    if (offer(selection, lightOf(own), own.place, preferred, weight, isSeen(own), chance)) {
-      chosenTarget = target;
-      from = count;
-    }
+    const vec3 f = unshadowed(surface, evaluateLight(lightOf(own), own.place, surface.position));
+    if (offerMerged(selection, own, f, own.confidence / total, own.weight, isSeen(own), chance)) from = count;
   }
-  Reservoir merged = finishMerge(selection, surface, total);
+  Reservoir merged = finishMerge(selection, surface, total, own);
   if (isNull(merged)) return merged;
 
   const LightSample here = evaluateLight(lightOf(merged), merged.place, surface.position);
@@ -48,13 +38,17 @@ Reservoir merge(Surface surface, Reservoir own) {
     const Surface neighbour = neighbourSurface(i);
     const LightSample there = lightThere(lightOf(merged), merged.place, neighbour.position);
     const float theirs = neighbourTarget(neighbour, there, i == from ? seenThere : from == count && isSeen(own) && isThisSurface(i)) * measureThere(there, here);
-    if (MUTANT(24, true, theirs > 0.0 && theirs >= threshold * chosenTarget)) {
+    if (MUTANT(24, true, theirs > 0.0 && theirs >= threshold * selection.target)) {
       z += neighbourReservoir(i).confidence;
     } else if (i == from) {
       // Hidden where it comes from, or next to never found there: its part of the sum is in the others' weights.
-      if (MUTANT(25, false, MUTANT(7, false, true))) return nullReservoir(total);
+      if (MUTANT(25, false, MUTANT(7, false, true))) {
+        mergedLight = vec3(0.0);
+        return nullReservoir(total);
+      }
     }
   }
   merged.weight *= total / z;
+  mergedLight *= total / z;
   return merged;
 }

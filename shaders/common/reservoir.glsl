@@ -4,10 +4,19 @@
 #define WEIR_RESERVOIR
 
 #include "mutants.glsl"
-#include "reservoir_state.glsl"
 #include "bsdf.glsl"
 #include "lights.glsl"
 #include "visibility.glsl"
+
+// Set when a shadow ray from the reservoir's own pixel found its sample wholly visible.
+const uint kSeen = 0x80000000u;
+
+uint lightOf(Reservoir r) { return r.light & ~kSeen; }
+bool isSeen(Reservoir r) { return (r.light & kSeen) != 0u; }
+bool isNull(Reservoir r) { return !(r.weight > 0.0); }
+
+Reservoir emptyReservoir() { return Reservoir(0u, 0u, 0.0, 0.0); }
+Reservoir nullReservoir(float confidence) { return Reservoir(0u, 0u, 0.0, confidence); }
 
 // A reservoir that came from outside: whatever is not a finite, valid sample becomes a null sample, so that one bad value
 // can't spread.
@@ -90,13 +99,12 @@ Reservoir finish(Selection s, float confidence) {
 }
 
 #ifdef CAN_TRACE
-// Shoots the shadow ray of a reservoir's own sample: a hidden one becomes a null sample (its W · f is zero either way), whose mark and
-// light say what was found.
+// Shoots the shadow ray of a reservoir's own sample: a hidden one becomes a null sample (its W · f is zero either way).
 void testVisibility(inout Reservoir r, Surface s) {
   if (isNull(r) || isSeen(r)) return;
   const float through = traceVisibility(s, evaluateLight(r.light, r.place, s.position));
   if (MUTANT(28, through < 1.0, through <= 0.0)) {
-    r.light |= kSeen;
+    r.light = 0u;
     r.weight = 0.0;
   } else if (through >= 1.0) {
     r.light |= kSeen;

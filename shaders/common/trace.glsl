@@ -19,11 +19,6 @@ void countRay() {
 #endif
 }
 
-#ifdef OPAQUE
-#define EXTRA_FLAGS gl_RayFlagsOpaqueEXT |
-#else
-#define EXTRA_FLAGS
-#endif
 #ifdef TRACE_PIPELINE
 layout(location = 0) rayPayloadEXT HitPayload tracePayload;
 layout(location = 1) rayPayloadEXT float traceThrough;
@@ -32,7 +27,7 @@ Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key, uint flags) 
   countRay();
   tracePayload.triangle = kNoTriangle;
   tracePayload.key = key;
-  traceRayEXT(sceneAcceleration, EXTRA_FLAGS flags, 0xffu, 0u, 0u, 0u, origin, 0.0, direction, tMax, 0);
+  traceRayEXT(sceneAcceleration, flags, 0xffu, 0u, 0u, 0u, origin, 0.0, direction, tMax, 0);
   return Hit(tracePayload.triangle, tracePayload.instance, tracePayload.barycentrics);
 }
 
@@ -42,7 +37,7 @@ Hit traceClosest(vec3 origin, vec3 direction, float tMax, uint key, uint flags) 
   float name(vec3 origin, vec3 direction, float tMax) {                                                                   \
     countRay();                                                                                                           \
     traceThrough = 1.0;                                                                                                   \
-    traceRayEXT(structure, EXTRA_FLAGS gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xffu, 1u, 0u, 1u,     \
+    traceRayEXT(structure, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xffu, 1u, 0u, 1u,     \
                 origin, 0.0, direction, tMax, 1);                                                                         \
     return traceThrough < 0.0 ? -traceThrough : 0.0;                                                                      \
   }

@@ -62,7 +62,6 @@ void run(uvec2 pixel) {
   Surface surface;
   if (lit) {
     surface = unpackSurface(packed, pixel, camera, frameSize);
-    const uint tile = cacheTile(pixel);
     Random random = randomFor(pixel, 0u);
     for (int i = 0; i < param_candidates; ++i) {
       uvec4 bits = nextBits4(random);
@@ -71,7 +70,7 @@ void run(uvec2 pixel) {
       const uint chosen = pickMixed(bits.xy, param_uniformShare);
       const Light light = sceneLights[chosen];
       const Candidate c = drawCandidate(light, bits.zw, surface, random);
-      const float target = targetFunction(surface, c.light) * guessVisibility(tile, chosen);
+      const float target = targetFunction(surface, c.light);
       if (!(target > 0.0)) continue;
       // 1/M · p̂ / p, with p = pdf of the light times density on it.
       float weight = target * c.spread / (mixedPdf(light, param_uniformShare) * float(MUTANT(30, param_candidates + 1, param_candidates)));
@@ -86,7 +85,7 @@ void run(uvec2 pixel) {
       offerAll(selections, chosen, c.place, target, weight, false, random);
     }
 #ifdef SCENE_ENVIRONMENT
-    lookAlongBsdf(selections, surface, tile, random);
+    lookAlongBsdf(selections, surface, random);
 #endif
 #ifdef BSDF_RAYS
     for (int i = 0; i < param_bsdfRays; ++i) offerRay(selections, surface, random);

@@ -5,42 +5,31 @@
 // Every pick has the density of pickMixed(), and each pixel looks at M of them whose numbers in the tile are uniform, so that the sum of
 // its weights is unbiased as with picks of its own. That neighbours look at the same picks makes them alike, not wrong.
 #include "initial_weights.glsl"
+#ifdef ORDERS_RAYS
+#include "ray_order.glsl"
+#endif
 
 const uint kPicks = 256u;
 const uint kPlain = 0x80000000u;  // a point light without a range: position and intensity are all there is to it
 
 shared uvec4 pickPlace[kPicks];  // position, and the light's number
 shared uvec4 pickPower[kPicks];  // intensity, and the pick's density
-#ifdef has_in_visibility
-const uint kParts = 16u / kCacheTile;  // of a tile's side, with guesses of their own
-shared float pickGuess[kParts * kParts][kPicks];
-#endif
 
-void pickForTile(uvec2 pixel, uint tile, uint thread, uint turn) {
+void pickForTile(uvec2 pixel, uint thread, uint turn) {
   Random random = randomFor(pixel, 1u);
   random.dimension = turn;
   uvec4 bits = nextBits4(random);
   // One pick in each part of the table: together they have its distribution, with less chance in how often a light comes.
-  bits.x = stratumBits(bits.x, thread, kPicks);
+  bits.x = (thread << 24u) | (bits.x >> 8u);
   const uint chosen = pickMixed(bits.xy, param_uniformShare);
   const Light light = sceneLights[chosen];
   const bool plain = (light.kind & kKindMask) == kPoint && !(light.b.z > 0.0);
   pickPlace[thread] = uvec4(floatBitsToUint(light.position), chosen | (plain ? kPlain : 0u));
   pickPower[thread] = uvec4(floatBitsToUint(light.radiance), floatBitsToUint(mixedPdf(light, param_uniformShare)));
-#ifdef has_in_visibility
-  const uvec2 corner = gl_WorkGroupID.xy * 16u;
-  for (uint y = 0u; y < kParts; ++y)
-    for (uint x = 0u; x < kParts; ++x)
-      pickGuess[y * kParts + x][thread] = guessVisibility(cacheTile(corner + uvec2(x, y) * kCacheTile), chosen);
-#endif
 }
 
 // `count` of the picks: one in each of as many parts of the tile's, which begin at a random place, so that all are equally likely.
 void lookThrough(inout Selection selections[out_reservoirs_count], Surface surface, uint count, uint begin, inout Random random) {
-#ifdef has_in_visibility
-  const uvec2 of = gl_LocalInvocationID.xy / kCacheTile;
-  const uint part = of.y * kParts + of.x;
-#endif
   const uint step = (kPicks << 16u) / count;
   const QuickTarget quick = quickTarget(surface);
   uvec4 words = uvec4(0u);
@@ -61,14 +50,7 @@ void lookThrough(inout Selection selections[out_reservoirs_count], Surface surfa
     } else {
       c = drawCandidate(sceneLights[chosen], nextBits4(random).xy, surface, random);
     }
-#ifdef EXACT_TARGET
-    float target = targetFunction(surface, c.light);
-#else
-    float target = quickTargetOf(quick, surface, c.light);
-#endif
-#ifdef has_in_visibility
-    target *= pickGuess[part][at];
-#endif
+    const float target = quickTargetOf(quick, surface, c.light);
     if (!(target > 0.0)) continue;
     // 1/M · p̂ / p, with p = pdf of the light times density on it.
     weight = target * c.spread / (pdf * float(MUTANT(30, param_candidates + 1, param_candidates)));
@@ -103,15 +85,26 @@ void run(uvec2 pixel) {
   const uint all = lightCount() > 0u ? uint(param_candidates) : 0u;
   for (uint done = 0u, turn = 0u; done < all; done += kPicks, ++turn) {
     if (turn > 0u) barrier();
-    pickForTile(pixel, tile, thread, turn);
+    pickForTile(pixel, thread, turn);
     barrier();
     const uint begin = pcg4d(uvec4(tile, frameIndex, frameSeed ^ launchStream, turn)).x >> 24u;
     if (lit) lookThrough(selections, surface, min(all - done, kPicks), begin, random);
   }
-  if (!inside) return;
 #ifdef SCENE_ENVIRONMENT
-  if (lit) lookAlongBsdf(selections, surface, cacheTile(pixel), random);
+  if (lit) lookAlongBsdf(selections, surface, random);
 #endif
-  for (uint k = 0u; k < out_reservoirs_count; ++k)
-    out_reservoirs[index * out_reservoirs_count + k] = lit ? finish(selections[k], 1.0) : emptyReservoir();
+  bool ray = false;
+  vec3 towards = vec3(0.0);
+  for (uint k = 0u; inside && k < out_reservoirs_count; ++k) {
+    const Reservoir r = lit ? finish(selections[k], 1.0) : emptyReservoir();
+    out_reservoirs[index * out_reservoirs_count + k] = r;
+#ifdef ORDERS_RAYS
+    if (isNull(r)) continue;
+    ray = true;
+    towards = evaluateLight(lightOf(r), r.place, surface.position).direction;
+#endif
+  }
+#ifdef ORDERS_RAYS
+  orderRay(ray ? rayKey(towards) : kNoRayKey);
+#endif
 }

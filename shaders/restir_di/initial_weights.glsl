@@ -7,7 +7,6 @@
 #include "random.glsl"
 #include "reservoir.glsl"
 #include "light_sample.glsl"
-#include "visibility_cache.glsl"
 
 const int kByArea = 0, kBySolidAngle = 1;
 
@@ -57,13 +56,13 @@ void offerAll(inout Selection selections[out_reservoirs_count], uint light, uint
 
 #ifdef SCENE_ENVIRONMENT
 // Directions of the environment by the BSDF.
-void lookAlongBsdf(inout Selection selections[out_reservoirs_count], Surface surface, uint tile, inout Random random) {
+void lookAlongBsdf(inout Selection selections[out_reservoirs_count], Surface surface, inout Random random) {
   const uint last = lightCount() - 1u;  // where the environment is
   const Light environment = sceneLights[last];
   for (int i = 0; i < param_bsdfCandidates && (environment.kind & kKindMask) == kEnvironment; ++i) {
     const uint place = environmentPlace(sampleBsdf(surface, next4(random).xyz));
     const LightSample light = evaluateEnvironment(place, surface.position);
-    const float target = targetFunction(surface, light) * guessVisibility(tile, last);
+    const float target = targetFunction(surface, light);
     if (!(target > 0.0)) continue;
     offerAll(selections, last, place, target, environmentWeight(surface, environment, light, environmentDensity(place), target), false,
              random);

@@ -1,47 +1,45 @@
-// The picture: f(y) · V(y) · W(y), the mean over the pixel's reservoirs, plus what the surface itself emits.
+// The picture: f(y) · V(y) · W(y), the mean over the pixel's reservoirs, plus what the surface itself emits. Here V is 1;
+// shade_visibility.glsl then shoots the rays of those samples that are not known to be seen, and takes back what is hidden.
+//
+// With what the spatial merge found, Σ m_i f(y_i) W_i, the chosen sample y says only how much of that is hidden:
+// Σ m_i f(y_i) W_i + f(y) W (V(y) - 1) has the same mean (y is chosen so that f(y) W has that of the sum), and where y is seen it
+// doesn't matter which of the samples it was.
 #include "mutants.glsl"
 #include "reservoir.glsl"
-
-// f · V · W; `r` is then what is known of its sample: a null sample, marked, if it is hidden.
-vec3 shade(inout Reservoir r, Surface surface) {
-  if (isNull(r)) return vec3(0.0);
-  const LightSample light = evaluateLight(lightOf(r), r.place, surface.position);
-  const vec3 f = unshadowed(surface, light);
-  if (f == vec3(0.0)) {
-    r = nullReservoir(r.confidence);
-    return vec3(0.0);
-  }
-  const float weight = r.weight;
-  float through = 1.0;
 #ifdef FINAL_VISIBILITY
-  // A sample that was seen from this very pixel needs no second ray.
-  if (MUTANT(1, false, !isSeen(r))) through = traceVisibility(surface, light);
-  if (through <= 0.0) {
-    r.light |= kSeen;
-    r.weight = 0.0;
-  }
+#include "ray_order.glsl"
 #endif
-  return MUTANT(29, min(f * (weight * through), vec3(1.0)), f * (weight * through));
-}
 
 void run(uvec2 pixel) {
   const uint index = pixel.y * frameWidth + pixel.x;
-  vec3 color = imageLoad(in_emission, ivec2(pixel)).rgb;
-  const PackedSurface packed = in_surface[index];
-  const bool lit = isSurface(packed);
-  Surface surface;
-  if (lit) surface = unpackSurface(packed, pixel, camera, frameSize);
-  vec3 sum = vec3(0.0);
-  for (uint k = 0u; k < in_reservoirs_count; ++k) {
-    const uint at = index * in_reservoirs_count + k;
-    Reservoir r = emptyReservoir();
-    if (lit) {
-      r = sanitized(in_reservoirs[at]);
-      sum += shade(r, surface);
+  bool ray = false;
+  vec3 towards = vec3(0.0);
+  if (all(lessThan(pixel, launchSize))) {
+    vec3 color = imageLoad(in_emission, ivec2(pixel)).rgb, sum = vec3(0.0);
+    const PackedSurface packed = in_surface[index];
+    if (isSurface(packed)) {
+      const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
+      for (uint k = 0u; k < in_reservoirs_count; ++k) {
+        const Reservoir r = sanitized(in_reservoirs[index * in_reservoirs_count + k]);
+        if (isNull(r)) continue;
+        const LightSample light = evaluateLight(lightOf(r), r.place, surface.position);
+        const vec3 f = unshadowed(surface, light);
+        if (f == vec3(0.0)) continue;
+        sum += MUTANT(29, min(f * r.weight, vec3(1.0)), f * r.weight);
+        // A sample that was seen from this very pixel needs no second ray.
+        if (MUTANT(1, false, !isSeen(r))) {
+          ray = true;
+          towards = light.direction;
+        }
+      }
     }
-#ifdef wanted_out_tested
-    out_tested[at] = r;
+    sum /= float(in_reservoirs_count);
+#ifdef has_in_light
+    sum = imageLoad(in_light, ivec2(pixel)).rgb;
 #endif
+    imageStore(out_color, ivec2(pixel), vec4(color + sum, 1.0));
   }
-  imageStore(out_color, ivec2(pixel), vec4(color + sum / float(in_reservoirs_count), 1.0));
+#ifdef FINAL_VISIBILITY
+  orderRay(ray ? rayKey(towards) : kNoRayKey);
+#endif
 }

@@ -1,24 +1,26 @@
-// The final shadow rays, apart from the arithmetic: takes back what is hidden.
+// The final shadow rays: of samples that are not known to be seen (shade.glsl).
+#include "mutants.glsl"
 #include "reservoir.glsl"
+#include "ray_order.glsl"
 
-void run(uvec2 pixel) {
+void run(uvec2 id) {
+  uvec2 pixel;
+  if (!pixelOfRay(id.x, pixel)) return;
   const uint index = pixel.y * frameWidth + pixel.x;
-  Reservoir r = in_reservoirs[index];
-  if (!(r.weight > 0.0) || isSeen(r) || lightOf(r) >= lightCount()) return;
   const Surface surface = unpackSurface(in_surface[index], pixel, camera, frameSize);
-  const LightSample light = evaluateLight(lightOf(r), r.place, surface.position);
-  if (!(dot(surface.geometricNormal, light.direction) > 0.0)) return;
-  const float through = traceVisibility(surface, light);
-  if (through >= 1.0) return;
-  const vec3 emission = imageLoad(in_emission, ivec2(pixel)).rgb;
-  vec3 color = emission;
-  if (through > 0.0) color += through * (imageLoad(out_color, ivec2(pixel)).rgb - emission);
-  imageStore(out_color, ivec2(pixel), vec4(color, 1.0));
-#ifdef wanted_out_tested
-  if (through <= 0.0) {
-    r.light |= kSeen;
-    r.weight = 0.0;
-    out_tested[index] = r;
+  vec3 arrives = vec3(0.0), hidden = vec3(0.0);
+  for (uint k = 0u; k < in_reservoirs_count; ++k) {
+    const Reservoir r = sanitized(in_reservoirs[index * in_reservoirs_count + k]);
+    if (isNull(r)) continue;
+    const LightSample light = evaluateLight(lightOf(r), r.place, surface.position);
+    const float through = isSeen(r) ? 1.0 : traceVisibility(surface, light);
+    if (in_reservoirs_count == 1u && through >= 1.0) return;
+    const vec3 f = unshadowed(surface, light) * r.weight;
+    arrives += f * through;
+    hidden += f * (1.0 - through);
   }
+#ifdef has_in_light
+  arrives = imageLoad(in_light, ivec2(pixel)).rgb * float(in_reservoirs_count) - MUTANT(70, 0.5, 1.0) * hidden;
 #endif
+  imageStore(out_color, ivec2(pixel), vec4(imageLoad(in_emission, ivec2(pixel)).rgb + arrives / float(in_reservoirs_count), 1.0));
 }

@@ -11,7 +11,6 @@ uint neighbours[kMostNeighbours];  // indices of pixels
 uint found = 0u;
 uint which = 0u;  // of a pixel's samples
 Random random;
-uvec2 here;
 
 uint neighbourCount() { return found; }
 #ifdef WEIR_MUTANT
@@ -36,7 +35,6 @@ Surface neighbourSurface(uint i) {
 }
 bool isThisSurface(uint i) { return false; }
 float nextChance() { return next1(random); }
-uint mergingTile() { return cacheTile(here); }
 
 // Who takes part follows from the surfaces alone.
 void findNeighbours(uvec2 pixel, PackedSurface packed) {
@@ -60,17 +58,25 @@ void run(uvec2 pixel) {
   const PackedSurface packed = in_surface[index];
   if (!isSurface(packed)) {
     for (uint k = 0u; k < kPerPixel; ++k) out_reservoirs[index * kPerPixel + k] = emptyReservoir();
+#ifdef wanted_out_light
+    if (launchIndex + 1u == uint(param_iterations)) imageStore(out_light, ivec2(pixel), vec4(0.0));
+#endif
     return;
   }
   const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
   random = randomFor(pixel, launchIndex);
-  here = pixel;
 #ifdef WEIR_MUTANT
   centre = surface;
 #endif
   findNeighbours(pixel, packed);
+  vec3 light = vec3(0.0);
   for (which = 0u; which < kPerPixel; ++which) {
     const uint at = index * kPerPixel + which;
+    mergedLight = vec3(0.0);
     out_reservoirs[at] = merge(surface, in_reservoirs[at]);
+    light += mergedLight;
   }
+#ifdef wanted_out_light
+  if (launchIndex + 1u == uint(param_iterations)) imageStore(out_light, ivec2(pixel), vec4(light / float(kPerPixel), 1.0));
+#endif
 }

@@ -16,10 +16,8 @@ vec4 chances;
 uint neighbourCount() { return 1u; }
 Reservoir neighbourReservoir(uint i) { return history; }
 Surface neighbourSurface(uint i) { return beforeSurface; }
-uvec2 here;
 bool stays = false;
 bool isThisSurface(uint i) { return stays; }
-uint mergingTile() { return cacheTile(here); }
 float nextChance() {
   chances = chances.yzwx;
   return chances.w;
@@ -61,7 +59,6 @@ void run(uvec2 pixel) {
 #endif
   beforeSurface = unpackSurface(beforePacked, uvec2(before), MUTANT(14, camera, previousCamera), frameSize);
   Random random = randomFor(pixel, 0u);
-  here = pixel;
   for (uint k = 0u; k < kPerPixel; ++k) {
     const Reservoir own = in_reservoirs[index * kPerPixel + k];
     history = sanitized(in_history[beforeIndex * kPerPixel + k]);
