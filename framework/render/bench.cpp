@@ -27,8 +27,7 @@ namespace fs = std::filesystem;
 
 void checkReference(const BenchPart& part, const BenchSettings& settings) {
   const BenchReference& r = part.reference;
-  if (!r.file.empty() && !r.graph.empty())
-    throw InputError("--reference and --reference-graph: only one of them");
+  if (!r.file.empty() && !r.graph.empty()) throw InputError("--reference and --reference-graph: only one of them");
   if (r.graph.empty() && (!r.overrides.set.empty() || r.frames != 1 || r.restarts != 2))
     throw InputError("--reference-set, --reference-frames and --reference-restarts need --reference-graph");
   if (!r.wanted() && r.exact) throw InputError("--reference-exact needs --reference");
@@ -108,8 +107,7 @@ class Bench {
   void compileReference(const BenchPart& part) {
     references_.emplace_back();
     if (part.reference.graph.empty()) return;
-    references_.back() =
-        laboratory_.compile(part.reference.graph, part.reference.overrides, part.width, part.height);
+    references_.back() = laboratory_.compile(part.reference.graph, part.reference.overrides, part.width, part.height);
     requirePicture(references_.back(), part.reference.graph, "radiance");
   }
 
@@ -234,8 +232,8 @@ class Bench {
 
   const Reference& referenceOf(size_t part) {
     const BenchPart& p = o_.parts[part];
-    const std::string key = fmt::format("{}x{}\n{}", p.width, p.height,
-                                        referenceText(p.reference, references_[part], build_));
+    const std::string key =
+        fmt::format("{}x{}\n{}", p.width, p.height, referenceText(p.reference, references_[part], build_));
     if (reference_ && reference_->key == key) return *reference_;
     reference_.reset();
     ReferencePicture picture =
@@ -248,8 +246,8 @@ class Bench {
 
   void addErrors(const Configuration& c, BenchRecord& record) {
     referenceOf(c.part);
-    const ErrorResult result = measureErrors(*executor_, laboratory_.stage(), o_.settings, reference_->picture,
-                                             reference_->meter);
+    const ErrorResult result =
+        measureErrors(*executor_, laboratory_.stage(), o_.settings, reference_->picture, reference_->meter);
     record.error = result.measure;
     record.pictures = writePictures(c, result);
   }
@@ -271,8 +269,7 @@ class Bench {
     names.reference =
         write("reference-" + c.id + ".png", radiance(reference_->picture.picture), image::Encoding::Radiance);
     if (!result.flipMap.empty())
-      names.flip =
-          write(c.id + ".flip.png", heatMap(result.flipMap, part.width, names.crop), image::Encoding::Display);
+      names.flip = write(c.id + ".flip.png", heatMap(result.flipMap, part.width, names.crop), image::Encoding::Display);
     return names;
   }
 
@@ -283,8 +280,8 @@ class Bench {
   BenchPlace place_;
   std::vector<Configuration> configurations_;
   std::vector<graph::CompiledGraph> references_;  ///< by part
-  std::set<std::string> warned_;  ///< scenes
-  std::optional<size_t> opened_;  ///< part whose scene is on the device
+  std::set<std::string> warned_;                  ///< scenes
+  std::optional<size_t> opened_;                  ///< part whose scene is on the device
   std::unique_ptr<execute::Executor> executor_, counting_;
   std::unique_ptr<Reference> reference_;
   BenchFile file_;

@@ -1,5 +1,5 @@
-// `weir bench` asked for what makes no sense, and what its files hold of what it printed. tests/cli/bench_check.py has whole
-// runs.
+// `weir bench` asked for what makes no sense, and what its files hold of what it printed. tests/cli/bench_check.py has
+// whole runs.
 #include "cli/program.h"
 
 namespace weir::test {
@@ -87,6 +87,8 @@ TEST_F(Bench, RefusesPlansAndMergesThatAreNone) {
   expectRefused("bench merge " + plan + " --out " + file("m.json"), "is no bench file");
   expectRefused("bench merge --out " + file("m.json"), "files");
   expectRefused("bench merge " + plan + " --out " + file("m.txt"), "must end in .json");
+  expectRefused("bench --frames 3 merge " + plan + " --out " + file("m.json"), "takes no --frames");
+  expectRefused("bench " + restir + " tables " + plan + " --plan " + plan, "takes no graph");
   expectRefused("bench tables " + plan + " --plan " + plan, "unknown key");
 }
 
