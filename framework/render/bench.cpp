@@ -77,7 +77,7 @@ class Bench {
 
   BenchOutcome run() {
     configurations_ = expand(laboratory_, o_.parts);
-    for (const BenchPart& part : o_.parts) compileReference(part);
+    for (const BenchPart& part : o_.parts) checkReferenceOf(part);
     for (const Configuration& c : configurations_)
       if (o_.parts[c.part].reference.wanted()) requirePicture(c.compiled, c.graph, o_.settings.output);
     identify();
@@ -104,8 +104,13 @@ class Bench {
   }
 
  private:
-  void compileReference(const BenchPart& part) {
+  /// What can be said of it before a scene is read: a file is read here and read again when it is needed, as those of
+  /// many parts would fill the memory.
+  void checkReferenceOf(const BenchPart& part) {
     references_.emplace_back();
+    headers_.emplace_back();
+    if (!part.reference.file.empty())
+      headers_.back().attributes = readRadiance(part.reference.file, part.width, part.height).attributes;
     if (part.reference.graph.empty()) return;
     references_.back() = laboratory_.compile(part.reference.graph, part.reference.overrides, part.width, part.height);
     requirePicture(references_.back(), part.reference.graph, "radiance");
@@ -136,6 +141,8 @@ class Bench {
     // From the last scene to the first, which is the one that measuring starts with.
     for (size_t p = o_.parts.size(); p-- > 0;) {
       openStage(p);
+      if (!o_.parts[p].reference.file.empty())
+        requireSameSubject(laboratory_.stage(), "none", o_.parts[p].reference.file, headers_[p]);
       place_ = {laboratory_.device().info().name, laboratory_.device().info().driver,
                 trace::backendName(laboratory_.backend())};
       for (Configuration& c : configurations_)
@@ -280,6 +287,7 @@ class Bench {
   BenchPlace place_;
   std::vector<Configuration> configurations_;
   std::vector<graph::CompiledGraph> references_;  ///< by part
+  std::vector<image::Picture> headers_;           ///< of reference files, without pixels, by part
   std::set<std::string> warned_;                  ///< scenes
   std::optional<size_t> opened_;                  ///< part whose scene is on the device
   std::unique_ptr<execute::Executor> executor_, counting_;
