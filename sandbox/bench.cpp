@@ -49,25 +49,42 @@ bool numbers(const std::string& text, char between, std::span<uint32_t> to) {
 void parseShard(const std::string& text, BenchOptions& o) {
   std::array<uint32_t, 2> both{};
   if (!numbers(text, '/', both) || both[0] >= both[1])
-    throw InputError(fmt::format(
-        "--shard '{}': expected I/N, counted from 0: 0/4, 1/4, 2/4 and 3/4 are the shards of four", text));
+    throw InputError(
+        fmt::format("--shard '{}': expected I/N, counted from 0: 0/4, 1/4, 2/4 and 3/4 are the shards of four", text));
   o.shard = both[0];
   o.shards = both[1];
 }
 
 render::Crop parseCrop(const std::string& text) {
   render::Crop crop{};
-  if (!numbers(text, ',', crop)) throw InputError(fmt::format("--crop '{}': expected x,y,width,height in pixels", text));
+  if (!numbers(text, ',', crop))
+    throw InputError(fmt::format("--crop '{}': expected x,y,width,height in pixels", text));
   return crop;
 }
 
 /// What the command line says of settings goes before what the plan says.
 void usePlan(const CLI::App& command, Words& words) {
   BenchOptions& o = words.options;
-  for (const char* name : {"graph", "--scene", "--lights", "--light-seed", "--replace-lights", "--environment",
-                           "--environment-scale", "--environment-rotation", "--camera", "--energy-compensation",
-                           "--animate", "--set", "--enable", "--disable", "--sweep", "--reference",
-                           "--reference-exact", "--reference-graph", "--reference-set", "--reference-frames",
+  for (const char* name : {"graph",
+                           "--scene",
+                           "--lights",
+                           "--light-seed",
+                           "--replace-lights",
+                           "--environment",
+                           "--environment-scale",
+                           "--environment-rotation",
+                           "--camera",
+                           "--energy-compensation",
+                           "--animate",
+                           "--set",
+                           "--enable",
+                           "--disable",
+                           "--sweep",
+                           "--reference",
+                           "--reference-exact",
+                           "--reference-graph",
+                           "--reference-set",
+                           "--reference-frames",
                            "--reference-restarts"})
     if (command.get_option(name)->count() > 0)
       throw InputError(fmt::format("{} and --plan: the plan says what is measured", name));
@@ -135,6 +152,14 @@ void run(const CLI::App& command, Words& words) {
              outcome.there, o.shards > 1 ? fmt::format(" (shard {}/{})", o.shard, o.shards) : "", o.out);
 }
 
+/// InputError when words of `weir bench` itself stand before one of its subcommands, which would ignore them.
+void requireAlone(const CLI::App& bench, const char* subcommand) {
+  for (const CLI::Option* option : bench.get_options())
+    if (option->count() > 0)
+      throw InputError(fmt::format("weir bench {} takes no {}; see weir bench {} --help", subcommand,
+                                   option->get_name(), subcommand));
+}
+
 void merge(const std::vector<std::string>& files, const std::string& out) {
   if (!out.ends_with(".json")) throw InputError(fmt::format("--out {}: the file must end in .json", out));
   render::checkWritable(out);
@@ -185,12 +210,16 @@ void addErrorOptions(CLI::App& command, Words& words) {
 
 void addMerge(CLI::App& bench) {
   CLI::App* command = bench.add_subcommand("merge", "Put the files of a bench's shards together");
-  command->footer("Exit status: 0 complete; 1 configurations are missing, which are listed (the file is written); 2 bad input.");
+  command->footer(
+      "Exit status: 0 complete; 1 configurations are missing, which are listed (the file is written); 2 bad input.");
   auto files = std::make_shared<std::vector<std::string>>();
   auto out = std::make_shared<std::string>();
   command->add_option("files", *files, "Files that `weir bench --shard` has written")->required();
   command->add_option("--out", *out, "FILE.json; FILE.csv is written beside it")->required();
-  command->callback([files, out] { merge(*files, *out); });
+  command->callback([files, out, &bench] {
+    requireAlone(bench, "merge");
+    merge(*files, *out);
+  });
 }
 
 void addTables(CLI::App& bench) {
@@ -201,16 +230,21 @@ void addTables(CLI::App& bench) {
   command->add_option("file", *file, "What `weir bench --plan` has written")->required();
   command->add_option("--plan", *plan, "The plan that has the tables")->required();
   command->add_option("--out", *out, "File to write them to instead");
-  command->callback([file, plan, out] { tables(*file, *plan, *out); });
+  command->callback([file, plan, out, &bench] {
+    requireAlone(bench, "tables");
+    tables(*file, *plan, *out);
+  });
 }
 
 }  // namespace
 
 void addBenchCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("bench", "Measure what graphs cost and how far their pictures are from a reference");
+  CLI::App* command =
+      app.add_subcommand("bench", "Measure what graphs cost and how far their pictures are from a reference");
   command->footer(
       "Started again with the same words it goes on where it was stopped. Two of several shards can run at a time, on\n"
-      "devices of their own: --shard 0/2 --out a.json and --shard 1/2 --out b.json, then weir bench merge a.json b.json.\n"
+      "devices of their own: --shard 0/2 --out a.json and --shard 1/2 --out b.json, then weir bench merge a.json "
+      "b.json.\n"
       "docs/bench.md has the formats.");
   auto words = std::make_shared<Words>();
   BenchOptions& o = words->options;
@@ -220,8 +254,7 @@ void addBenchCommand(CLI::App& app) {
   command->add_option("--size", words->size, "Width x height in pixels")->capture_default_str();
   addOverrideOptions(*command, words->part.overrides);
   command
-      ->add_option("--sweep", words->sweeps,
-                   "pass.param=a,b,c or pass.enabled=true,false; several: every combination")
+      ->add_option("--sweep", words->sweeps, "pass.param=a,b,c or pass.enabled=true,false; several: every combination")
       ->allow_extra_args(false);
   command->add_option("--plan", o.plan, "JSON file that says what to measure instead");
   command->add_option("--scenes", words->scenes, "Folder that a plan's scenes are in; default: the plan's own");
@@ -235,8 +268,7 @@ void addBenchCommand(CLI::App& app) {
   command->add_flag("--floor", words->floor,
                     "Also measure what the rays and buffers of each configuration cost at the least");
   command->add_flag("--fresh", o.fresh, "Measure again what FILE.json has");
-  command->add_option("--shard", words->shard,
-                      "I/N: every N-th configuration from the I-th on, counted from 0");
+  command->add_option("--shard", words->shard, "I/N: every N-th configuration from the I-th on, counted from 0");
   addDeviceOptions(*command, o.device.device, o.device.trace, o.device.validation);
   addPluginPath(*command, o.pluginPaths);
   addMerge(*command);

@@ -35,11 +35,12 @@ tools/build.sh weir_app
 from=build/release/bin
 
 rm -rf "$out"
-mkdir -p "$out/bin" "$out/lib/runtime" "$out/lib/loader" "$out/scenes"
+mkdir -p "$out/bin" "$out/lib/runtime" "$out/lib/loader" "$out/scenes" "$out/bench"
 touch "$out/.weir-bundle"
 cp "${programs[@]/#/$from/}" "$from"/libweir*.so "$from"/weir_*.json "$out/bin/"
 cp -rL "$from/shaders" "$out/bin/"
 cp -r graphs LICENSE "$out/"
+cp bench/thesis.json "$out/bench/"
 cp scenes/*.glb ${extra[@]+"${extra[@]}"} "$out/scenes/"
 
 # The C library stays the target's own, and so does what its drivers bring.

@@ -13,6 +13,7 @@ BASE=(
   libdraco-dev libmeshoptimizer-dev libembree-dev
   nlohmann-json3-dev libcli11-dev libfmt-dev libgtest-dev libbenchmark-dev python3 python3-jsonschema patchelf
   openimageio-tools
+  parallel
 )
 # Mesa of plain Debian 12 (22.3) has no ray tracing in its software device; the one in backports has.
 BACKPORTS=(mesa-vulkan-drivers)

@@ -8,6 +8,7 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <functional>
@@ -57,17 +58,28 @@ void unpackPixel(const std::byte* from, Format format, float* to) {
   }
 }
 
-void unpack(std::span<const std::byte> bytes, const graph::Resource& resource, image::Picture& picture) {
-  picture.width = resource.width;
-  picture.height = resource.height;
-  picture.rgba.resize(4 * size_t{resource.width} * resource.height);
-  if (resource.type.format == Format::RGBA32F) {  // as it is
-    std::memcpy(picture.rgba.data(), bytes.data(), picture.rgba.size() * sizeof(float));
+/// Pixels from `begin` to before `end`.
+void unpackPart(std::span<const std::byte> bytes, Format format, image::Picture& picture, size_t begin, size_t end) {
+  const uint32_t texel = formatBytes(format);
+  if (format == Format::RGBA32F) {  // as it is
+    std::memcpy(&picture.rgba[4 * begin], &bytes[begin * texel], (end - begin) * texel);
     return;
   }
-  const uint32_t texel = formatBytes(resource.type.format);
-  for (size_t i = 0; i < picture.rgba.size() / 4; ++i)
-    unpackPixel(&bytes[i * texel], resource.type.format, &picture.rgba[4 * i]);
+  for (size_t i = begin; i < end; ++i) unpackPixel(&bytes[i * texel], format, &picture.rgba[4 * i]);
+}
+
+/// On several cores when it is the only picture: one takes as long to copy it as a GPU to make the next one.
+void unpack(std::span<const std::byte> bytes, const graph::Resource& resource, image::Picture& picture,
+            bool alone = false) {
+  picture.width = resource.width;
+  picture.height = resource.height;
+  const size_t pixels = size_t{resource.width} * resource.height;
+  picture.rgba.resize(4 * pixels);
+  constexpr size_t kPiece = size_t{1} << 18;
+  if (!alone || pixels <= kPiece) return unpackPart(bytes, resource.type.format, picture, 0, pixels);
+  parallelFor((pixels + kPiece - 1) / kPiece, [&](size_t piece) {
+    unpackPart(bytes, resource.type.format, picture, piece * kPiece, std::min(pixels, (piece + 1) * kPiece));
+  });
 }
 
 }  // namespace
@@ -257,7 +269,7 @@ void Executor::deliver(Slot& slot) {
     const auto unpackLane = [&](size_t lane) {
       const gpu::Buffer& buffer = slot.captures[i * scene_.lanes() + lane];
       buffer.invalidate();
-      unpack(std::span(buffer.mapped(), resource.bytes), resource, captured_[i].pictures[lane]);
+      unpack(std::span(buffer.mapped(), resource.bytes), resource, captured_[i].pictures[lane], lanes == 1);
     };
     parallelFor(lanes, std::cref(unpackLane));
     sink_(captured_[i].output, std::span(captured_[i].pictures).first(lanes));

@@ -20,7 +20,8 @@ struct Sums {
 };
 
 /// What a pixel adds: of all sequences in [0], of all but r in [r + 1].
-void pixelSums(std::span<const SequenceErrors> sequences, const Picture& reference, size_t pixel, std::span<Sums> sums) {
+void pixelSums(std::span<const SequenceErrors> sequences, const Picture& reference, size_t pixel,
+               std::span<Sums> sums) {
   const size_t n = sequences.size();
   const double count = static_cast<double>(n);
   double first[3] = {}, second[3] = {}, weight[3], within = 0;

@@ -1,7 +1,7 @@
 // How alike frames of one sequence are: what averaging N of them is worth.
 //
-// The integrated autocorrelation time τ is defined by Var(mean of N frames) → τ · Var(one frame) / N for large N. τ = 1:
-// frames are independent; τ = 40: forty frames are worth one. docs/bench.md derives the estimator:
+// The integrated autocorrelation time τ is defined by Var(mean of N frames) → τ · Var(one frame) / N for large N. τ =
+// 1: frames are independent; τ = 40: forty frames are worth one. docs/bench.md derives the estimator:
 //
 //   V_N(p) = 1/(R-1) Σ_r |m_r(p) - m̄(p)|²       variance of a sequence's mean m_r over R independent sequences
 //   W(p)   = 1/R Σ_r ( e_r(p) - |m_r(p) - b(p)|² )   variance inside of a sequence; e_r: mean error of its frames

@@ -1,6 +1,7 @@
 // Section and equation numbers are those of the 2020 paper unless "HDR" stands before them.
 #include <fmt/format.h>
 #include <weir/core/error.h>
+#include <weir/core/parallel.h>
 #include <weir/image/flip.h>
 #include <weir/image/flip_filters.h>
 
@@ -231,12 +232,18 @@ std::vector<float> hdrFlip(const Picture& test, const Picture& reference, double
   const FlipExposures exposures = flipExposures(reference);
   const double step = exposures.count > 1 ? (exposures.stop - exposures.start) / (exposures.count - 1) : 0.0;
   std::vector<float> largest(size_t{test.width} * test.height);
-  for (int i = 0; i < exposures.count; ++i) {
-    const double scale = std::exp2(exposures.start + step * i);
-    const auto shown = [&](float v) { return Aces::map(float(std::min(scale * std::max(double(v), 0.0), 1e30))); };
-    const std::vector<float> map =
-        compare(mapped(test, shown), mapped(reference, shown), test.width, test.height, space, kernels);
-    for (size_t p = 0; p < largest.size(); ++p) largest[p] = std::max(largest[p], map[p]);
+  const auto count = static_cast<size_t>(exposures.count), pixels = std::max<size_t>(1, largest.size());
+  // Several exposures at a time, each of which takes about 160 bytes a pixel, in two gigabytes.
+  const size_t atOnce = std::clamp<size_t>((size_t{2} << 30) / (160 * pixels), 1, 16);
+  for (size_t first = 0; first < count; first += atOnce) {
+    std::vector<std::vector<float>> maps(std::min(atOnce, count - first));
+    parallelFor(maps.size(), [&](size_t k) {
+      const double scale = std::exp2(exposures.start + step * static_cast<double>(first + k));
+      const auto shown = [&](float v) { return Aces::map(float(std::min(scale * std::max(double(v), 0.0), 1e30))); };
+      maps[k] = compare(mapped(test, shown), mapped(reference, shown), test.width, test.height, space, kernels);
+    });
+    for (const std::vector<float>& map : maps)
+      for (size_t p = 0; p < largest.size(); ++p) largest[p] = std::max(largest[p], map[p]);
   }
   return largest;
 }

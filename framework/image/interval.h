@@ -17,9 +17,9 @@ struct Interval {
 Interval meanInterval(std::span<const double> values);
 
 /// Of a figure worked out from all repeats at once: the jackknife (Tukey 1958). `whole`: from all n repeats;
-/// `without`[r]: from all but r. Pseudo-values n · whole - (n - 1) · without[r] are treated as independent: their mean's
-/// standard error and t of n - 1 degrees of freedom, around `whole`. The ends are NaN for fewer than three repeats, as
-/// what is left then knows no spread.
+/// `without`[r]: from all but r. Pseudo-values n · whole - (n - 1) · without[r] are treated as independent: their
+/// mean's standard error and t of n - 1 degrees of freedom, around `whole`. The ends are NaN for fewer than three
+/// repeats, as what is left then knows no spread.
 Interval jackknifeInterval(double whole, std::span<const double> without);
 
 }  // namespace weir::image

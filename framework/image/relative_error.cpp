@@ -36,18 +36,14 @@ size_t binOf(float value) {
 struct Histogram {
   std::array<uint64_t, size_t{1} << kBinBits> counts{};
   std::array<double, size_t{1} << kBinBits> sums{};
+  void add(float value) {
+    const size_t bin = binOf(value);
+    ++counts[bin];
+    sums[bin] += static_cast<double>(value);
+  }
 };
 
-Histogram histogramOf(std::span<const float> values) {
-  std::vector<Histogram> parts(pieces(values.size()));
-  forPieces(values.size(), [&](size_t piece, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      if (std::isnan(values[i])) continue;
-      const size_t bin = binOf(values[i]);
-      ++parts[piece].counts[bin];
-      parts[piece].sums[bin] += static_cast<double>(values[i]);
-    }
-  });
+Histogram sumOf(const std::vector<Histogram>& parts) {
   Histogram all;
   for (const Histogram& part : parts) {
     for (size_t b = 0; b < all.counts.size(); ++b) {
@@ -56,6 +52,15 @@ Histogram histogramOf(std::span<const float> values) {
     }
   }
   return all;
+}
+
+Histogram histogramOf(std::span<const float> values) {
+  std::vector<Histogram> parts(pieces(values.size()));
+  forPieces(values.size(), [&](size_t piece, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      if (!std::isnan(values[i])) parts[piece].add(values[i]);
+  });
+  return sumOf(parts);
 }
 
 /// Where the `count` largest begin.
@@ -96,10 +101,8 @@ bool finite(const float* p) {
   return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
 }
 
-}  // namespace
-
-double trimmedMean(std::span<const float> values) {
-  const Histogram histogram = histogramOf(values);
+/// As trimmedMean(), with the histogram of the values.
+double trimmedMeanOf(std::span<const float> values, const Histogram& histogram) {
   const uint64_t n = countOf(histogram);
   if (n == 0) return kNaN;
   const uint64_t dropped = n / 1000;
@@ -115,6 +118,12 @@ double trimmedMean(std::span<const float> values) {
   if (cut.inside > 0) std::nth_element(edge.begin(), kept, edge.end());
   for (auto v = edge.begin(); v != kept; ++v) sum += static_cast<double>(*v);
   return sum / static_cast<double>(n - dropped);
+}
+
+}  // namespace
+
+double trimmedMean(std::span<const float> values) {
+  return trimmedMeanOf(values, histogramOf(values));
 }
 
 float largestKept(std::span<const float> values) {
@@ -145,7 +154,9 @@ PictureError RelativeErrorMeter::measure(const Picture& test) {
   if (test.width != reference_.width || test.height != reference_.height || test.rgba.size() != reference_.rgba.size())
     throw InputError(fmt::format("the picture is {}x{} pixels, the reference {}x{}", test.width, test.height,
                                  reference_.width, reference_.height));
+  // All in one pass, as starting threads and reading pictures take longer than the sums.
   std::vector<Sums> parts(pieces(pixels_.size()));
+  std::vector<Histogram> histograms(parts.size());
   forPieces(pixels_.size(), [&](size_t piece, size_t begin, size_t end) {
     Sums sums;
     for (size_t i = begin; i < end; ++i) {
@@ -163,6 +174,7 @@ PictureError RelativeErrorMeter::measure(const Picture& test) {
       }
       relative /= 3.0;
       pixels_[i] = static_cast<float>(relative);
+      histograms[piece].add(pixels_[i]);
       sums.errors += relative;
       sums.luminance += luminance(a);
     }
@@ -178,7 +190,7 @@ PictureError RelativeErrorMeter::measure(const Picture& test) {
   PictureError e;
   e.nonFinite = all.nonFinite;
   e.relMse = all.errors / static_cast<double>(pixels_.size() - all.nonFinite);  // 0/0: a mean of nothing
-  e.trimmed = trimmedMean(pixels_);
+  e.trimmed = trimmedMeanOf(pixels_, sumOf(histograms));
   const double expected = luminance_ - all.missing;
   e.relativeBias = expected > 0.0 ? (all.luminance - expected) / expected : kNaN;
   return e;

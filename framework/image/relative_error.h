@@ -11,10 +11,10 @@
 namespace weir::image {
 
 struct PictureError {
-  double relMse = 0;         ///< as Metrics::relMse; NaN where no pixel is finite
-  double trimmed = 0;        ///< as Metrics::relMseTrimmed
-  double relativeBias = 0;   ///< as Metrics::relativeBias
-  uint64_t nonFinite = 0;    ///< pixels of the picture that are left out
+  double relMse = 0;        ///< as Metrics::relMse; NaN where no pixel is finite
+  double trimmed = 0;       ///< as Metrics::relMseTrimmed
+  double relativeBias = 0;  ///< as Metrics::relativeBias
+  uint64_t nonFinite = 0;   ///< pixels of the picture that are left out
 };
 
 class RelativeErrorMeter {

@@ -27,8 +27,7 @@ namespace fs = std::filesystem;
 
 void checkReference(const BenchPart& part, const BenchSettings& settings) {
   const BenchReference& r = part.reference;
-  if (!r.file.empty() && !r.graph.empty())
-    throw InputError("--reference and --reference-graph: only one of them");
+  if (!r.file.empty() && !r.graph.empty()) throw InputError("--reference and --reference-graph: only one of them");
   if (r.graph.empty() && (!r.overrides.set.empty() || r.frames != 1 || r.restarts != 2))
     throw InputError("--reference-set, --reference-frames and --reference-restarts need --reference-graph");
   if (!r.wanted() && r.exact) throw InputError("--reference-exact needs --reference");
@@ -78,7 +77,7 @@ class Bench {
 
   BenchOutcome run() {
     configurations_ = expand(laboratory_, o_.parts);
-    for (const BenchPart& part : o_.parts) compileReference(part);
+    for (const BenchPart& part : o_.parts) checkReferenceOf(part);
     for (const Configuration& c : configurations_)
       if (o_.parts[c.part].reference.wanted()) requirePicture(c.compiled, c.graph, o_.settings.output);
     identify();
@@ -105,11 +104,15 @@ class Bench {
   }
 
  private:
-  void compileReference(const BenchPart& part) {
+  /// What can be said of it before a scene is read: a file is read here and read again when it is needed, as those of
+  /// many parts would fill the memory.
+  void checkReferenceOf(const BenchPart& part) {
     references_.emplace_back();
+    headers_.emplace_back();
+    if (!part.reference.file.empty())
+      headers_.back().attributes = readRadiance(part.reference.file, part.width, part.height).attributes;
     if (part.reference.graph.empty()) return;
-    references_.back() =
-        laboratory_.compile(part.reference.graph, part.reference.overrides, part.width, part.height);
+    references_.back() = laboratory_.compile(part.reference.graph, part.reference.overrides, part.width, part.height);
     requirePicture(references_.back(), part.reference.graph, "radiance");
   }
 
@@ -138,6 +141,8 @@ class Bench {
     // From the last scene to the first, which is the one that measuring starts with.
     for (size_t p = o_.parts.size(); p-- > 0;) {
       openStage(p);
+      if (!o_.parts[p].reference.file.empty())
+        requireSameSubject(laboratory_.stage(), "none", o_.parts[p].reference.file, headers_[p]);
       place_ = {laboratory_.device().info().name, laboratory_.device().info().driver,
                 trace::backendName(laboratory_.backend())};
       for (Configuration& c : configurations_)
@@ -234,8 +239,8 @@ class Bench {
 
   const Reference& referenceOf(size_t part) {
     const BenchPart& p = o_.parts[part];
-    const std::string key = fmt::format("{}x{}\n{}", p.width, p.height,
-                                        referenceText(p.reference, references_[part], build_));
+    const std::string key =
+        fmt::format("{}x{}\n{}", p.width, p.height, referenceText(p.reference, references_[part], build_));
     if (reference_ && reference_->key == key) return *reference_;
     reference_.reset();
     ReferencePicture picture =
@@ -248,8 +253,8 @@ class Bench {
 
   void addErrors(const Configuration& c, BenchRecord& record) {
     referenceOf(c.part);
-    const ErrorResult result = measureErrors(*executor_, laboratory_.stage(), o_.settings, reference_->picture,
-                                             reference_->meter);
+    const ErrorResult result =
+        measureErrors(*executor_, laboratory_.stage(), o_.settings, reference_->picture, reference_->meter);
     record.error = result.measure;
     record.pictures = writePictures(c, result);
   }
@@ -271,8 +276,7 @@ class Bench {
     names.reference =
         write("reference-" + c.id + ".png", radiance(reference_->picture.picture), image::Encoding::Radiance);
     if (!result.flipMap.empty())
-      names.flip =
-          write(c.id + ".flip.png", heatMap(result.flipMap, part.width, names.crop), image::Encoding::Display);
+      names.flip = write(c.id + ".flip.png", heatMap(result.flipMap, part.width, names.crop), image::Encoding::Display);
     return names;
   }
 
@@ -283,8 +287,9 @@ class Bench {
   BenchPlace place_;
   std::vector<Configuration> configurations_;
   std::vector<graph::CompiledGraph> references_;  ///< by part
-  std::set<std::string> warned_;  ///< scenes
-  std::optional<size_t> opened_;  ///< part whose scene is on the device
+  std::vector<image::Picture> headers_;           ///< of reference files, without pixels, by part
+  std::set<std::string> warned_;                  ///< scenes
+  std::optional<size_t> opened_;                  ///< part whose scene is on the device
   std::unique_ptr<execute::Executor> executor_, counting_;
   std::unique_ptr<Reference> reference_;
   BenchFile file_;

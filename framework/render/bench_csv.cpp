@@ -91,7 +91,8 @@ std::string benchCsv(const BenchFile& file) {
       } else {
         table.add(key, value);
       }
-      if (key == "floor" && value.is_object() && value.contains("parts")) addNamed(table, "floor.parts", value["parts"]);
+      if (key == "floor" && value.is_object() && value.contains("parts"))
+        addNamed(table, "floor.parts", value["parts"]);
     }
   }
   return table.text();

@@ -23,8 +23,8 @@ namespace {
 
 /// Of one repeat.
 struct Repeat {
-  std::vector<double> frames, trimmed;         ///< relMSE of each compared frame
-  std::vector<image::PictureError> means;      ///< by meanLengths()
+  std::vector<double> frames, trimmed;     ///< relMSE of each compared frame
+  std::vector<image::PictureError> means;  ///< by meanLengths()
   double flip = 0;
 };
 
@@ -120,13 +120,13 @@ ReferencePicture renderReference(Laboratory& laboratory, const BenchReference& o
   image::RestartAccumulator sum;
   restarts.run(options.restarts, [&](std::span<const image::Picture> pictures) { sum.add(pictures); });
   if (sum.nonFinite() > 0)
-    throw RuntimeError(fmt::format("the reference {} has {} pixels that are not finite", options.graph,
-                                   sum.nonFinite()));
+    throw RuntimeError(
+        fmt::format("the reference {} has {} pixels that are not finite", options.graph, sum.nonFinite()));
   ReferencePicture result;
   result.picture = sum.mean();
-  result.what = fmt::format("{}, {} restart{} of {} frame{}", std::filesystem::path(options.graph).filename().string(),
-                            options.restarts, options.restarts == 1 ? "" : "s", options.frames,
-                            options.frames == 1 ? "" : "s");
+  result.what =
+      fmt::format("{}, {} restart{} of {} frame{}", std::filesystem::path(options.graph).filename().string(),
+                  options.restarts, options.restarts == 1 ? "" : "s", options.frames, options.frames == 1 ? "" : "s");
   result.relMse = std::numeric_limits<double>::quiet_NaN();
   if (options.restarts < 2) return result;
   const image::Picture error = sum.standardError();
@@ -153,9 +153,8 @@ std::vector<uint32_t> meanLengths(uint32_t errorFrames) {
   return lengths;
 }
 
-ReferencePicture makeReference(Laboratory& laboratory, const BenchReference& options,
-                               const graph::CompiledGraph& graph, const BenchSettings& settings, uint32_t width,
-                               uint32_t height) {
+ReferencePicture makeReference(Laboratory& laboratory, const BenchReference& options, const graph::CompiledGraph& graph,
+                               const BenchSettings& settings, uint32_t width, uint32_t height) {
   ReferencePicture result;
   if (options.file.empty()) {
     result = renderReference(laboratory, options, graph, settings);
@@ -196,9 +195,8 @@ ErrorResult measureErrors(execute::Executor& executor, const Stage& stage, const
     executor.finish();
     executor.takeTimes();
     if (settings.flip)
-      flip = std::async(std::launch::async, [frame = errors.last, &reference] {
-        return flipOf(frame, reference.picture);
-      });
+      flip = std::async(std::launch::async,
+                        [frame = errors.last, &reference] { return flipOf(frame, reference.picture); });
   }
   collectFlip();
   executor.captureTo({}, {});

@@ -25,9 +25,8 @@ struct ReferencePicture {
 
 /// From its file, or rendered by `graph` (compiled from BenchReference::graph). The laboratory must be open. Throws
 /// InputError, RuntimeError.
-ReferencePicture makeReference(Laboratory& laboratory, const BenchReference& options,
-                               const graph::CompiledGraph& graph, const BenchSettings& settings, uint32_t width,
-                               uint32_t height);
+ReferencePicture makeReference(Laboratory& laboratory, const BenchReference& options, const graph::CompiledGraph& graph,
+                               const BenchSettings& settings, uint32_t width, uint32_t height);
 
 struct ErrorResult {
   ErrorMeasure measure;

@@ -58,9 +58,8 @@ uint32_t whole(const std::string& path, const Json& j, const char* key) {
 std::string identity(const std::string& path, const Json& j) {
   if (!j.is_object()) refuse(path, "a configuration must be an object");
   std::string id = text(path, j, "id");
-  const bool valid = id.size() == 16 && std::ranges::all_of(id, [](char c) {
-                       return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-                     });
+  const bool valid = id.size() == 16 &&
+                     std::ranges::all_of(id, [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
   if (!valid) refuse(path, fmt::format("id '{}' must be 16 hexadecimal digits", id.substr(0, 60)));
   return id;
 }
@@ -135,8 +134,8 @@ BenchFile readBenchFile(const std::string& path) {
   if (root.is_discarded()) refuse(path, "not valid JSON");
   if (!root.is_object() || !root.contains("weir_bench")) refuse(path, "\"weir_bench\" is missing");
   if (root["weir_bench"] != kVersion)
-    refuse(path, fmt::format("its version is {}, this program's {}", dumped(root["weir_bench"], -1).substr(0, 60),
-                             kVersion));
+    refuse(path,
+           fmt::format("its version is {}, this program's {}", dumped(root["weir_bench"], -1).substr(0, 60), kVersion));
   BenchFile file;
   file.device = text(path, root, "device");
   file.driver = text(path, root, "driver");
@@ -202,9 +201,9 @@ Merged mergeBenchFiles(const std::vector<std::string>& paths, const std::string&
     if (!conflict.empty())
       throw InputError(fmt::format("'{}' and '{}' don't belong together: {}", paths.front(), path, conflict));
     if (merged.file.planned != one.planned)
-      throw InputError(fmt::format(
-          "'{}' and '{}' don't belong together: they are of different plans, of {} and {} configurations",
-          paths.front(), path, merged.file.planned.size(), one.planned.size()));
+      throw InputError(
+          fmt::format("'{}' and '{}' don't belong together: they are of different plans, of {} and {} configurations",
+                      paths.front(), path, merged.file.planned.size(), one.planned.size()));
     for (const MeasuredConfiguration& c : one.configurations)
       if (!merged.file.has(c.id))
         merged.file.configurations.push_back({c.id, moved(c.json, folderOf(path), folderOf(out))});

@@ -20,8 +20,8 @@ struct FloorPart {
 };
 
 struct Floor {
-  double gpuMs = 0;      ///< sum of the parts, a frame
-  double multiple = 0;   ///< median GPU time of a frame / gpuMs
+  double gpuMs = 0;     ///< sum of the parts, a frame
+  double multiple = 0;  ///< median GPU time of a frame / gpuMs
   std::vector<FloorPart> parts;
 };
 

@@ -21,7 +21,8 @@ uint64_t folderDigest(const fs::path& folder, uint64_t hash) {
     if (i->is_regular_file()) files.push_back(i->path());
   std::ranges::sort(files);
   for (const fs::path& file : files)
-    hash = fnv1a(fmt::format("{} {:016x}\n", file.lexically_relative(folder).string(), fileDigest(file.string())), hash);
+    hash =
+        fnv1a(fmt::format("{} {:016x}\n", file.lexically_relative(folder).string(), fileDigest(file.string())), hash);
   return hash;
 }
 
@@ -100,9 +101,9 @@ std::string identityOf(const Configuration& configuration, const Stage& stage, c
   std::string text = "bench 1\n" + build.text() + "\n" + graphText(configuration.compiled, build);
   text += fmt::format("scene {}\nlights {}\ncamera {}\nshading {}\nanimation {}\n", stage.sceneLabel, stage.lightsLabel,
                       stage.cameraLabel, stage.shadingLabel,
-                      stage.playback ? fmt::format("{} {} {}", stage.playback->clip, stage.playback->start,
-                                                   stage.playback->step)
-                                     : "none");
+                      stage.playback
+                          ? fmt::format("{} {} {}", stage.playback->clip, stage.playback->start, stage.playback->step)
+                          : "none");
   text += fmt::format("device {}\ndriver {}\ntrace {}\n", place.device, place.driver, place.trace);
   text += fmt::format("warmup {} frames {} first {} seed {} floor {}\n", s.warmup, s.frames, s.firstFrame, s.seed,
                       options.floor != nullptr);

@@ -52,9 +52,9 @@ using Crop = std::array<uint32_t, 4>;  ///< x, y, width, height in pixels
 struct BenchSettings {
   uint32_t warmup = 40, frames = 100;  ///< before and while times are taken
   uint32_t firstFrame = 0, seed = 0;
-  uint32_t repeats = 4;      ///< independent restarts that errors are taken from; 12 + 8 bytes a pixel and repeat
+  uint32_t repeats = 4;        ///< independent restarts that errors are taken from; 12 + 8 bytes a pixel and repeat
   uint32_t errorFrames = 256;  ///< of each, after `warmup`
-  uint32_t errorEvery = 1;   ///< one frame of so many is compared by itself; means are of all
+  uint32_t errorEvery = 1;     ///< one frame of so many is compared by itself; means are of all
   std::string output = "radiance";
   bool flip = true;
   std::optional<Crop> crop;  ///< none: 256×256 in the middle, or the whole of a smaller picture
@@ -65,11 +65,11 @@ struct BenchOptions {
   BenchSettings settings;
   DeviceChoice device;
   std::vector<std::string> pluginPaths;
-  std::string plan;  ///< file that the parts are from; empty: the command line
-  std::string out;   ///< FILE.json
-  bool fresh = false;                ///< what FILE.json has is measured anew
-  uint32_t shard = 0, shards = 1;    ///< every `shards`-th configuration from `shard` on
-  FloorFunction floor;               ///< measured after the times of each configuration; none: not at all
+  std::string plan;                ///< file that the parts are from; empty: the command line
+  std::string out;                 ///< FILE.json
+  bool fresh = false;              ///< what FILE.json has is measured anew
+  uint32_t shard = 0, shards = 1;  ///< every `shards`-th configuration from `shard` on
+  FloorFunction floor;             ///< measured after the times of each configuration; none: not at all
   /// What is being measured, its number from 1, and how many there are.
   std::function<void(const std::string&, size_t, size_t)> progress;
   std::function<void(const std::string&)> warn;

@@ -22,7 +22,8 @@ float displayScale(const image::Picture& reference);
 /// Radiance times `scale`, for writePng as Encoding::Radiance.
 image::Picture scaled(image::Picture picture, float scale);
 
-/// FLIP values in [0,1] of a picture of that width in the colours of "magma", from black to pale yellow: display values.
+/// FLIP values in [0,1] of a picture of that width in the colours of "magma", from black to pale yellow: display
+/// values.
 image::Picture heatMap(std::span<const float> values, uint32_t width, const Crop& crop);
 
 }  // namespace weir::render

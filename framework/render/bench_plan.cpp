@@ -33,8 +33,9 @@ class Reader {
     if (!object(root, "", "a plan")) finish();
     const JsonMember* sweeps = nullptr;
     const JsonMember* tables = nullptr;
-    keys(root, "", {"$schema", "version", "description", "size", "frames", "warmup", "firstFrame", "seed", "repeats",
-                    "errorFrames", "errorEvery", "output", "flip", "crop", "reference", "sweeps", "tables"},
+    keys(root, "",
+         {"$schema", "version", "description", "size", "frames", "warmup", "firstFrame", "seed", "repeats",
+          "errorFrames", "errorEvery", "output", "flip", "crop", "reference", "sweeps", "tables"},
          [&](const JsonMember& m, const std::string& at) {
            BenchSettings& s = plan.settings;
            if (m.key == "version") version = whole(m.value, at, 1, 1);
@@ -58,9 +59,8 @@ class Reader {
     if (sweeps == nullptr)
       add(root.line, "sweeps", "is missing; expected an array of sweeps");
     else
-      each(sweeps->value, "sweeps", [&](const JsonValue& v, const std::string& at) {
-        plan.parts.push_back(sweep(v, at, common));
-      });
+      each(sweeps->value, "sweeps",
+           [&](const JsonValue& v, const std::string& at) { plan.parts.push_back(sweep(v, at, common)); });
     std::set<std::string> names;
     for (const BenchPart& part : plan.parts)
       if (!names.insert(part.name).second)
@@ -103,7 +103,8 @@ class Reader {
   }
   template <typename Work>
   void each(const JsonValue& v, const std::string& at, const Work& work) {
-    if (v.kind != JsonValue::Kind::Array) return add(v.line, at, fmt::format("expected an array, not {}", v.kindName()));
+    if (v.kind != JsonValue::Kind::Array)
+      return add(v.line, at, fmt::format("expected an array, not {}", v.kindName()));
     for (size_t i = 0; i < v.elements.size(); ++i) work(v.elements[i], fmt::format("{}[{}]", at, i));
   }
   template <typename T>
@@ -171,8 +172,7 @@ class Reader {
   }
   void set(const JsonValue& v, const std::string& at, graph::Overrides& overrides) {
     if (!object(v, at, "\"set\"")) return;
-    for (const JsonMember& m : v.members)
-      overrides.set.push_back(m.key + "=" + scalarText(m.value, under(at, m.key)));
+    for (const JsonMember& m : v.members) overrides.set.push_back(m.key + "=" + scalarText(m.value, under(at, m.key)));
   }
 
   void reference(const JsonValue& v, const std::string& at, BenchReference& r) {
@@ -194,9 +194,10 @@ class Reader {
     BenchPart part = common;
     if (!object(v, at, "a sweep")) return part;
     StageOptions& stage = part.stage;
-    keys(v, at, {"name", "graphs", "scene", "lights", "lightSeed", "replaceLights", "environment", "environmentScale",
-                 "environmentRotation", "camera", "energyCompensation", "size", "set", "enable", "disable", "sweep",
-                 "reference"},
+    keys(v, at,
+         {"name", "graphs", "scene", "lights", "lightSeed", "replaceLights", "environment", "environmentScale",
+          "environmentRotation", "camera", "energyCompensation", "size", "set", "enable", "disable", "sweep",
+          "reference"},
          [&](const JsonMember& m, const std::string& place) {
            if (m.key == "name") assign(part.name, text(m.value, place));
            if (m.key == "graphs")
@@ -293,8 +294,7 @@ BenchPlan loadBenchPlan(const std::string& path, const std::string& scenes) {
 
 void checkSettings(const BenchSettings& s) {
   const auto within = [](const char* option, uint32_t value, uint32_t low, uint32_t high) {
-    if (value < low || value > high)
-      throw InputError(fmt::format("{} {}: must be {} … {}", option, value, low, high));
+    if (value < low || value > high) throw InputError(fmt::format("{} {}: must be {} … {}", option, value, low, high));
   };
   constexpr uint32_t kMostFrames = 1'000'000;
   within("--frames", s.frames, 1, kMostFrames);

@@ -15,8 +15,8 @@ namespace weir::render {
 /// One table of a report: a sweep's configurations, a row each, beside figures that somebody else has published.
 struct BenchTable {
   std::string name, title;
-  std::string sweep;               ///< of the plan
-  std::vector<std::string> knobs;  ///< "pass.param" or "pass.enabled": what the rows differ in
+  std::string sweep;                        ///< of the plan
+  std::vector<std::string> knobs;           ///< "pass.param" or "pass.enabled": what the rows differ in
   std::map<std::string, double> published;  ///< milliseconds by knob values, "32" or "true,false"; unknown: not there
   std::string source;                       ///< of the published figures
 };

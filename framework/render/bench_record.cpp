@@ -49,8 +49,7 @@ Json toJson(const ErrorMeasure& e) {
   j["frames"] = e.frames;
   j["every"] = e.every;
   j["reference"] = {{"what", e.reference}, {"exact", e.exact}, {"relmse", number(e.referenceRelMse)}};
-  j["relmse"] = {
-      {"median", toJson(e.frameMedian)}, {"mean", toJson(e.frameMean)}, {"trimmed", toJson(e.frameTrimmed)}};
+  j["relmse"] = {{"median", toJson(e.frameMedian)}, {"mean", toJson(e.frameMean)}, {"trimmed", toJson(e.frameTrimmed)}};
   for (size_t i = 0; i < e.means.size(); ++i) {
     const std::string name = fmt::format("relmse_mean{}", e.means[i].first);
     j[name] = toJson(e.means[i].second);

@@ -17,8 +17,8 @@ namespace weir::render {
 
 struct PassMeasure {
   std::string name, type;
-  std::optional<Quantiles> gpuMs;  ///< none where the device has no timestamps
-  double cpuMs = 0;                ///< median time to record it
+  std::optional<Quantiles> gpuMs;            ///< none where the device has no timestamps
+  double cpuMs = 0;                          ///< median time to record it
   uint64_t bytesRead = 0, bytesWritten = 0;  ///< of its declared ports, each once
 };
 
@@ -29,15 +29,15 @@ struct CostMeasure {
   double frameCpuMs = 0;  ///< median time to record and submit
   double wallMs = 0;      ///< whole loop / frames
   uint64_t transientBytes = 0, historyBytes = 0, sceneBytes = 0, savedBytes = 0;
-  uint64_t rays = 0;      ///< of a frame
+  uint64_t rays = 0;  ///< of a frame
 };
 
 struct ErrorMeasure {
   uint32_t repeats = 0, frames = 0, every = 1;
-  std::string reference;          ///< in words
-  bool exact = false;             ///< the reference has no error of its own, by word or by its restarts' agreement
-  double referenceRelMse = 0;     ///< what its own error adds to each relMSE; NaN: unknown
-  image::Interval frameMedian, frameMean, frameTrimmed;     ///< relMSE of one frame
+  std::string reference;       ///< in words
+  bool exact = false;          ///< the reference has no error of its own, by word or by its restarts' agreement
+  double referenceRelMse = 0;  ///< what its own error adds to each relMSE; NaN: unknown
+  image::Interval frameMedian, frameMean, frameTrimmed;                   ///< relMSE of one frame
   std::vector<std::pair<uint32_t, image::Interval>> means, trimmedMeans;  ///< of the first N frames' mean, by N
   std::optional<image::Interval> flip;
   image::Interval bias, correlationTime;

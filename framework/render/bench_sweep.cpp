@@ -101,8 +101,7 @@ class Expander {
     for (const Sweep& sweep : part.sweeps) {
       count *= sweep.values.size();
       if (result_.size() + count > kMostConfigurations)
-        throw InputError(
-            fmt::format("{}more than {} combinations of values", where(part), kMostConfigurations));
+        throw InputError(fmt::format("{}more than {} combinations of values", where(part), kMostConfigurations));
     }
     // The last sweep's value changes fastest.
     for (size_t i = 0; i < count; ++i) {

@@ -16,8 +16,8 @@ struct Configuration {
   size_t part = 0;    ///< which of the options' parts
   std::string graph;  ///< file
   graph::Overrides overrides;
-  std::string label;                 ///< for people: graph and swept values
-  std::vector<std::string> sweeps;   ///< names of all parts that have it
+  std::string label;                             ///< for people: graph and swept values
+  std::vector<std::string> sweeps;               ///< names of all parts that have it
   std::map<std::string, ParamValue> settings;    ///< "pass.param" that were swept or set; "pass.enabled"
   std::map<std::string, ParamValue> parameters;  ///< of every pass that runs; "pass.enabled" of those switched off
   graph::CompiledGraph compiled;

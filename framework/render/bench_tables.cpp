@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -49,8 +50,7 @@ std::string knobText(const Json& record, const std::string& knob) {
   if (!parameters.is_object()) return "?";
   const auto found = parameters.find(knob);
   if (found != parameters.end())
-    return found->is_string() ? found->get<std::string>()
-                              : found->dump(-1, ' ', false, Json::error_handler_t::replace);
+    return found->is_string() ? found->get<std::string>() : found->dump(-1, ' ', false, Json::error_handler_t::replace);
   // Only passes that are off are listed as such.
   return knob.ends_with(".enabled") ? "true" : "-";
 }
@@ -86,6 +86,18 @@ bool apart(const Figure& a, const Figure& b) {
   return a.high < b.low || b.high < a.low;
 }
 
+/// By the knob where it is a number; else, and for what is not measured, the plan's order.
+void sortRows(std::vector<Row>& rows) {
+  const auto value = [](const Row& row) {
+    char* end = nullptr;
+    const double v = std::strtod(row.knobs.c_str(), &end);
+    return row.measured && end != row.knobs.c_str() && *end == '\0' && std::isfinite(v)
+               ? v
+               : std::numeric_limits<double>::infinity();
+  };
+  std::ranges::stable_sort(rows, {}, value);
+}
+
 /// What can be said of rows that differ in the knobs alone.
 std::string inertness(const std::vector<Row>& rows) {
   std::vector<const Row*> known;
@@ -109,8 +121,9 @@ std::string inertness(const std::vector<Row>& rows) {
 void print(std::string& out, const BenchTable& table, const std::vector<Row>& rows) {
   out += fmt::format("### {}{}{}\n\n", table.name, table.title.empty() ? "" : ": ", table.title);
   if (!table.source.empty()) out += fmt::format("Published figures: {}.\n\n", table.source);
-  out += fmt::format("| {} | published, ms | here, ms | relMSE of a frame | trimmed | of the 64-frame mean | bias, % |\n",
-                     fmt::join(table.knobs, ", "));
+  out +=
+      fmt::format("| {} | published, ms | here, ms | relMSE of a frame | trimmed | of the 64-frame mean | bias, % |\n",
+                  fmt::join(table.knobs, ", "));
   out += "|---|---|---|---|---|---|---|\n";
   for (const Row& row : rows) {
     const auto published = table.published.find(row.knobs);
@@ -141,6 +154,7 @@ std::string benchTables(const BenchFile& file, const BenchPlan& plan) {
         rows.back().knobs = planned.label;
       }
     }
+    sortRows(rows);
     print(out, table, rows);
   }
   return out;

@@ -18,13 +18,14 @@ import tempfile
 import time
 
 WEIR, SOURCE, DEVICE, CASE = sys.argv[1:5]
+WEIR = os.path.abspath(WEIR)
 DEVICE = os.environ.get("WEIR_TEST_DEVICE", DEVICE)
 SKIPPED = 77
 
 
-def words(out, *more):
+def words(out, *more, frames=2):
     return ["bench", SOURCE + "/graphs/restir_di.json", "--scene", SOURCE + "/scenes/cornell.glb", "--size", "16x16", "--device", DEVICE,
-            "--warmup", "1", "--frames", "2", "--out", out, *more]
+            "--warmup", "1", "--frames", str(frames), "--out", out, *more]
 
 
 SWEEP = ["--sweep", "initial.candidates=1,2,4", "--sweep", "spatial.enabled=true,false"]
@@ -101,7 +102,7 @@ def kill_when_begun(out, command):
 def case_kill(folder):
     """A shard that is killed leaves a whole file; run again, it measures what is missing and nothing twice."""
     shards = [os.path.join(folder, f"{i}.json") for i in range(2)]
-    commands = [words(shards[i], *SWEEP, "--frames", "30", "--shard", f"{i}/2") for i in range(2)]
+    commands = [words(shards[i], *SWEEP, "--shard", f"{i}/2", frames=100) for i in range(2)]
     kill_when_begun(shards[0], commands[0])
     before = load(shards[0])["configurations"]
     assert 1 <= len(before) < 3, len(before)

@@ -1,5 +1,5 @@
-// `weir bench` asked for what makes no sense, and what its files hold of what it printed. tests/cli/bench_check.py has whole
-// runs.
+// `weir bench` asked for what makes no sense, and what its files hold of what it printed. tests/cli/bench_check.py has
+// whole runs.
 #include "cli/program.h"
 
 namespace weir::test {
@@ -9,9 +9,9 @@ using Json = nlohmann::json;
 
 class Bench : public Program {
  protected:
-  std::string start(const std::string& graph = "") const {
+  std::string start(const std::string& graph = "", const std::string& counts = "--size 8x8 --frames 1") const {
     return "bench " + (graph.empty() ? restir : graph) + " --scene " + cornell + " --device " + deviceChoice() +
-           " --size 8x8 --warmup 0 --frames 1 ";
+           " --warmup 0 " + counts + " ";
   }
   std::string out() const { return "--out " + file("b.json") + " "; }
   TemporaryFolder inputs;
@@ -36,13 +36,13 @@ TEST_F(Bench, RefusesNumbersThatMakeNoSense) {
     expectRefused(start() + out() + "--shard=" + shard, "counted from 0");
   for (const char* crop : {"1", "0,0,0,0", "0,0,9,1", "-1,0,1,1", "1,2,3,4,5", "0,0,4294967295,4294967295", "x"})
     expectRefused(start() + out() + "--reference-graph " + allLights + " --crop=" + crop, "--crop");
-  expectRefused(start() + out() + "--frames 0", "--frames 0");
-  expectRefused(start() + out() + "--frames 4294967295", "--frames 4294967295");
+  expectRefused(start("", "--size 8x8 --frames 0") + out(), "--frames 0");
+  expectRefused(start("", "--size 8x8 --frames 4294967295") + out(), "--frames 4294967295");
   expectRefused(start() + out() + "--repeats 0", "--repeats 0");
   expectRefused(start() + out() + "--error-every 300", "--error-every 300");
   expectRefused(start() + out() + "--first-frame 4294967295", "--first-frame");
-  expectRefused(start() + out() + "--size 0x8", "--size 0x8");
-  expectRefused(start() + out() + "--size 99999x8", "1 … 16384");
+  expectRefused(start("", "--size 0x8") + out(), "--size 0x8");
+  expectRefused(start("", "--size 99999x8") + out(), "1 … 16384");
 }
 
 TEST_F(Bench, RefusesReferencesThatAreNone) {
@@ -87,6 +87,8 @@ TEST_F(Bench, RefusesPlansAndMergesThatAreNone) {
   expectRefused("bench merge " + plan + " --out " + file("m.json"), "is no bench file");
   expectRefused("bench merge --out " + file("m.json"), "files");
   expectRefused("bench merge " + plan + " --out " + file("m.txt"), "must end in .json");
+  expectRefused("bench --frames 3 merge " + plan + " --out " + file("m.json"), "takes no --frames");
+  expectRefused("bench " + restir + " tables " + plan + " --plan " + plan, "takes no graph");
   expectRefused("bench tables " + plan + " --plan " + plan, "unknown key");
 }
 

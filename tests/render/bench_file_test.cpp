@@ -194,16 +194,17 @@ TEST(Tables, StandBesidePublishedFiguresAndFindInertKnobs) {
   BenchPlan plan;
   plan.tables = {{"6.7", "neighbours", "s", {"initial.candidates"}, {{"8", 9.8}}, "somebody"}};
   BenchFile f = file({});
-  f.configurations = {{idOf(0), record(0, 1.0, 0.5, 8)}, {idOf(1), record(1, 1.002, 0.505, 32)}};
+  f.configurations = {{idOf(1), record(1, 1.0, 0.5, 8)}, {idOf(0), record(0, 1.002, 0.505, 32)}};
   const std::string inert = benchTables(f, plan);
   EXPECT_TRUE(has(inert, "### 6.7: neighbours")) << inert;
+  EXPECT_LT(inert.find("| 8 |"), inert.find("| 32 |"));
   EXPECT_TRUE(has(inert, "| 8 | 9.8 | 1.000 | 0.5 ± 0.01 |")) << inert;
   EXPECT_TRUE(has(inert, "| 32 |  | 1.002 |")) << inert;
   EXPECT_TRUE(has(inert, "label 3 |  | not measured |")) << inert;
   EXPECT_TRUE(has(inert, "Inert?")) << inert;
-  f.configurations[1].json = record(1, 1.1, 0.505, 32);  // ten times the noise of its median, and more than 1 %
+  f.configurations[1].json = record(0, 1.1, 0.505, 32);  // ten times the noise of its median, and more than 1 %
   EXPECT_FALSE(has(benchTables(f, plan), "Inert?"));
-  f.configurations[1].json = record(1, 1.002, 0.6, 32);  // intervals apart
+  f.configurations[1].json = record(0, 1.002, 0.6, 32);  // intervals apart
   EXPECT_FALSE(has(benchTables(f, plan), "Inert?"));
 }
 

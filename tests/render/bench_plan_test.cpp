@@ -162,8 +162,8 @@ TEST(Plan, SaysWhatIsWrongWithLineAndNearestName) {
   EXPECT_TRUE(has(one(R"("sweep": {"p.enabled": [1]})"), "neither true nor false"));
   EXPECT_TRUE(has(one(R"("reference": {})"), "either \"file\" or \"graph\""));
   EXPECT_TRUE(has(one(R"("size": "12")"), "is no size"));
-  EXPECT_TRUE(has(planRefusal(R"({"version": 1, "sweeps": [], "tables": [{"sweep": "x", "knobs": ["k"]}]})"),
-                  "no sweep 'x'"));
+  EXPECT_TRUE(
+      has(planRefusal(R"({"version": 1, "sweeps": [], "tables": [{"sweep": "x", "knobs": ["k"]}]})"), "no sweep 'x'"));
   EXPECT_TRUE(has(planRefusal(R"({"version": 1, "crop": [1], "sweeps": []})"), "[x, y, width, height]"));
   std::string many = "[0";
   for (int i = 0; i < 100'001; ++i) many += ",0";
