@@ -67,6 +67,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
   addRenderCommand(app);
   addCompareCommand(app);
   addVerifyCommand(app);
+  addChartCommand(app);
   addGraphCommand(app);
   addPassesCommand(app);
   addSceneCommand(app);
