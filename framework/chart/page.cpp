@@ -6,6 +6,7 @@
 #include <weir/core/paths.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -37,15 +38,25 @@ Json axesJson(const std::vector<Axis>& axes) {
   return list;
 }
 
+Json figures(const Interval& i) {
+  if (!std::isfinite(i.value)) return nullptr;
+  const auto number = [](double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); };
+  return Json::array({number(i.value), number(i.low), number(i.high)});
+}
+
+/// What each axis shows of a configuration, so that the page need not know where figures come from.
+std::string axisFigures(const Configuration& c, const std::vector<Axis>& times, const std::vector<Axis>& errors) {
+  Json json = {{"times", Json::array()}, {"errors", Json::array()}};
+  for (const Axis& axis : times) json["times"].push_back(figures(timeOf(c, axis.key)));
+  for (const Axis& axis : errors) json["errors"].push_back(figures(errorOf(c, axis.key)));
+  return dump(json);
+}
+
 void appendData(std::string& page, const Bench& bench, const View& view, const EmbeddedPictures& pictures) {
-  Json head = {{"title", view.title},
-               {"time", view.time.key},
-               {"error", view.error.key},
-               {"times", axesJson(timeAxes(bench))},
-               {"errors", axesJson(errorAxes())},
-               {"picturesLeftOut", pictures.leftOut},
-               {"files", Json::array()},
-               {"groups", Json::array()}};
+  const std::vector<Axis> times = timeAxes(bench), errors = errorAxes();
+  Json head = {{"title", view.title},      {"time", view.time.key},      {"error", view.error.key},
+               {"times", axesJson(times)}, {"errors", axesJson(errors)}, {"picturesLeftOut", pictures.leftOut},
+               {"files", Json::array()},   {"groups", Json::array()}};
   for (const BenchFile& f : bench.files) {
     head["files"].push_back({{"name", fs::path(f.path).filename().string()},
                              {"device", f.device},
@@ -55,15 +66,16 @@ void appendData(std::string& page, const Bench& bench, const View& view, const E
   }
   for (const Group& group : groups(bench))
     head["groups"].push_back({{"label", group.label}, {"configurations", group.configurations}});
-  std::string text = dump(head);
-  text.pop_back();  // "}": more members follow
-  appendJson(page, text);
+  // Members are appended as text: with many configurations one tree of everything would be large.
+  const auto without = [](std::string text) { return text.substr(0, text.size() - 1); };
+  appendJson(page, without(dump(head)));
   page += ",\"configurations\":[";
   for (size_t i = 0; i < bench.configurations.size(); ++i) {
     const Configuration& c = bench.configurations[i];
     const std::array<int, 3>& p = pictures.of[i];
-    page +=
-        fmt::format("{}{{\"file\":{},\"pictures\":[{},{},{}],\"data\":", i > 0 ? ",\n" : "", c.file, p[0], p[1], p[2]);
+    page += i > 0 ? ",\n" : "";
+    appendJson(page, without(axisFigures(c, times, errors)));
+    page += fmt::format(",\"file\":{},\"pictures\":[{},{},{}],\"data\":", c.file, p[0], p[1], p[2]);
     appendJson(page, c.json);
     page += "}";
   }
