@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uintmax_t kLargestFile = uintmax_t{128} << 20u;
+constexpr int kDeepest = 64;
 constexpr size_t kMostConfigurations = 20000;
 
 struct Closer {
@@ -40,8 +41,13 @@ std::string readText(const std::string& path) {
 }
 
 Json parse(const std::string& path, const std::string& text) {
+  // Whatever walks over a tree, its destructor first, does so recursively.
+  const auto depthChecked = [&](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kDeepest) throw InputError(fmt::format("{}: nested deeper than {} levels", path, kDeepest));
+    return true;
+  };
   try {
-    return Json::parse(text);
+    return Json::parse(text, depthChecked);
   } catch (const nlohmann::json::exception& error) {
     // "[json.exception.parse_error.101] parse error at line 1, …"
     std::string reason = error.what();

@@ -18,7 +18,7 @@ LogAxis::LogAxis(const std::vector<double>& values, double from, double to) : fr
 }
 
 double LogAxis::at(double value) const {
-  return from_ + (to_ - from_) * std::log(value / low_) / std::log(high_ / low_);
+  return from_ + (to_ - from_) * (std::log(value) - std::log(low_)) / (std::log(high_) - std::log(low_));
 }
 
 double LogAxis::clipped(double value) const {

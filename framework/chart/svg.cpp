@@ -134,10 +134,10 @@ class Panel {
       const Point& p = points_[i];
       std::string path;
       if (p.time.high > p.time.value)
-        path +=
-            fmt::format("M{:.1f} {:.1f}H{:.1f}", x_.at(p.time.value), y_.at(p.error.value), x_.clipped(p.time.high));
+        path += fmt::format("M{:.1f} {:.1f}H{:.1f}", x_.clipped(p.time.value), y_.clipped(p.error.value),
+                            x_.clipped(p.time.high));
       if (p.error.high > 0)
-        path += fmt::format("M{:.1f} {:.1f}V{:.1f}", x_.at(p.time.value), y_.clipped(p.error.high),
+        path += fmt::format("M{:.1f} {:.1f}V{:.1f}", x_.clipped(p.time.value), y_.clipped(p.error.high),
                             p.error.low > 0 ? y_.clipped(p.error.low) : kBottom);
       if (path.empty()) continue;
       out += fmt::format("<path class=\"bar\" d=\"{}\" stroke=\"{}\" opacity=\"{}\"/>\n", path,
@@ -149,7 +149,7 @@ class Panel {
   std::string frontLine() const {
     std::vector<std::pair<double, double>> corners;
     for (size_t i = 0; i < points_.size(); ++i)
-      if (front_[i]) corners.emplace_back(x_.at(points_[i].time.value), y_.at(points_[i].error.value));
+      if (front_[i]) corners.emplace_back(x_.clipped(points_[i].time.value), y_.clipped(points_[i].error.value));
     std::sort(corners.begin(), corners.end());
     std::string path = fmt::format("M{:.1f} {}", corners.front().first, kTop);
     for (const auto& [x, y] : corners) path += fmt::format("H{:.1f}V{:.1f}", x, y);
@@ -164,8 +164,9 @@ class Panel {
         if (front_[i] != onFront) continue;
         const Point& p = points_[i];
         const Configuration& c = bench_.configurations[p.configuration];
-        out += symbol(x_.at(p.time.value), y_.at(p.error.value), onFront ? 5.5 : 4, kind(p), onFront ? 1 : 0.4,
-                      fmt::format("{} {}: {:.4g} ms, error {:.4g}", c.graph, c.id, p.time.value, p.error.value));
+        out +=
+            symbol(x_.clipped(p.time.value), y_.clipped(p.error.value), onFront ? 5.5 : 4, kind(p), onFront ? 1 : 0.4,
+                   fmt::format("{} {}: {:.4g} ms, error {:.4g}", c.graph, c.id, p.time.value, p.error.value));
       }
     }
     return out + "</g>\n";

@@ -12,7 +12,6 @@ namespace {
 
 using chart::Bench;
 
-
 std::string refusalOf(const std::function<void()>& work) {
   try {
     work();
@@ -49,7 +48,8 @@ TEST_F(BenchText, BiasIsShownByItsSizeAndReachesZeroWhereItMayBeNone) {
   Json sure = configuration("b", 1, 1);
   sure["error"]["bias"] = {{"value", -0.02}, {"low", -0.03}, {"high", -0.01}};
   const Bench b = chart::readBench({write(bench({configuration("a", 4, 0.5), sure}))});
-  const chart::Interval maybe = chart::errorOf(b.configurations[0], "bias"), yes = chart::errorOf(b.configurations[1], "bias");
+  const chart::Interval maybe = chart::errorOf(b.configurations[0], "bias"),
+                        yes = chart::errorOf(b.configurations[1], "bias");
   EXPECT_EQ(maybe.value, 0.01);
   EXPECT_EQ(maybe.low, 0);
   EXPECT_EQ(maybe.high, 0.03);
@@ -65,7 +65,8 @@ TEST_F(BenchText, AxesAreChosenByWhatWasMeasured) {
   EXPECT_EQ(chart::chooseTime(b, "").key, "wall");
   EXPECT_EQ(chart::chooseError(b, "").key, "bias");
   EXPECT_EQ(chart::chooseTime(b, "pass.pick").key, "pass.pick");
-  expectHas(refusalOf([&] { chart::chooseTime(b, "pass.pcik"); }), "no time is called 'pass.pcik' (nearest is 'pass.pick')");
+  expectHas(refusalOf([&] { chart::chooseTime(b, "pass.pcik"); }),
+            "no time is called 'pass.pcik' (nearest is 'pass.pick')");
   expectHas(refusalOf([&] { chart::chooseError(b, "relmse.medain"); }), "nearest is 'relmse.median'");
 }
 
@@ -77,8 +78,9 @@ TEST_F(BenchText, GroupsAreScenesSizesAndDevices) {
   size["size"] = {32, 32};
   Json device = bench({configuration("e", 1, 1)});
   device["device"] = "Another device";
-  const Bench b = chart::readBench({write(bench({configuration("a", 1, 1), other, lights, size, configuration("f", 2, 2)})),
-                                    write(device, "device.json")});
+  const Bench b =
+      chart::readBench({write(bench({configuration("a", 1, 1), other, lights, size, configuration("f", 2, 2)})),
+                        write(device, "device.json")});
   const std::vector<chart::Group> all = chart::groups(b);
   ASSERT_EQ(all.size(), 5u);
   EXPECT_EQ(all[0].configurations, (std::vector<size_t>{0, 4}));
@@ -103,7 +105,8 @@ TEST_F(BenchText, OnlyWhatALogAxisCanShowIsAPoint) {
 }
 
 TEST(LogAxis, HoldsItsValuesAndItsTicks) {
-  for (const std::vector<double>& values : {std::vector<double>{4.1}, {4.1, 4.3}, {0.002, 700}, {1e-300, 1e300}, {5e-324}, {}}) {
+  for (const std::vector<double>& values :
+       {std::vector<double>{4.1}, {4.1, 4.3}, {0.002, 700}, {1e-300, 1e300}, {5e-324}, {}}) {
     const chart::LogAxis axis(values, 100, 500);
     const std::vector<double> ticks = axis.ticks();
     EXPECT_GE(ticks.size(), 2u);

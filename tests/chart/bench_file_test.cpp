@@ -40,15 +40,27 @@ TEST_F(BenchText, WhatWasNotMeasuredMayBeMissingOrNull) {
   EXPECT_EQ(b.configurations.at(0).wall.median, 3);
 }
 
-// Members that a later version adds are no mistake, and don't reach the page, however deep they are.
+// Members that a later version adds are no mistake, and don't reach the page.
 TEST_F(BenchText, UnknownMembersAreLeftOut) {
   Json c = configuration("a", 4, 0.5);
   c["new"] = "something new";
   EXPECT_EQ(chart::readBench({write(bench({c}))}).configurations.at(0).json.find("something new"), std::string::npos);
+  c["new"] = Json::parse(std::string(50, '[') + std::string(50, ']'));
+  EXPECT_EQ(refusal(bench({c})), "");
+}
+
+TEST_F(BenchText, DeepNestingIsRefused) {
   std::string text = bench({configuration("a", 4, 0.5)}).dump();
-  const std::string deep = std::string(200000, '[') + std::string(200000, ']');
-  text.insert(1, "\"deep\":" + deep + ",");
-  EXPECT_EQ(refusal(text), "");
+  for (const auto& [open, close] : {std::pair{"[", "]"}, {R"({"a":)", "}"}}) {
+    std::string deep, end;
+    for (int i = 0; i < 200000; ++i) {
+      deep += open;
+      end += close;
+    }
+    expectHas(refusal(std::string(text).insert(1, "\"deep\":" + deep + "1" + end + ",")),
+              "nested deeper than 64 levels");
+    expectHas(refusal(deep), "nested deeper than 64 levels");
+  }
 }
 
 TEST_F(BenchText, WrongFilesAreRefusedWithTheirPlace) {
@@ -81,8 +93,14 @@ TEST_F(BenchText, WrongConfigurationsAreRefusedWithTheirPlace) {
       {[](Json& c) { c["scene"] = "s"; }, "configurations[1].scene: the text 's'; expected an object"},
       {[](Json& c) { c["scene"].erase("file"); }, "configurations[1].scene: 'file' is missing"},
       {[](Json& c) { c["size"] = {1}; }, "configurations[1].size: expected 2 numbers"},
-      {[](Json& c) { c["size"] = {1.5, 2}; }, "configurations[1].size[0]: 1.5; expected a whole number"},
-      {[](Json& c) { c["size"] = {1e12, 2}; }, "expected a whole number from 0 to 1048576"},
+      {[](Json& c) {
+         c["size"] = {1.5, 2};
+       },
+       "configurations[1].size[0]: 1.5; expected a whole number"},
+      {[](Json& c) {
+         c["size"] = {1e12, 2};
+       },
+       "expected a whole number from 0 to 1048576"},
       {[](Json& c) { c["passes"] = Json::object(); }, "configurations[1].passes: an object; expected an array"},
       {[](Json& c) { c["passes"][1].erase("type"); }, "configurations[1].passes[1]: 'type' is missing"},
       {[](Json& c) { c["frame"]["gpu_ms"]["median"] = -1; }, "configurations[1].frame.gpu_ms.median: -1"},
@@ -90,9 +108,13 @@ TEST_F(BenchText, WrongConfigurationsAreRefusedWithTheirPlace) {
       {[](Json& c) { c["settings"]["pick.count"] = {1}; }, "configurations[1].settings.pick.count: an array of 1"},
       {[](Json& c) { c["settings"] = 1; }, "configurations[1].settings: 1; expected an object"},
       {[](Json& c) { c["error"]["relmse"]["median"]["low"] = 0.6; }, "does not hold the value 0.5"},
-      {[](Json& c) { c["error"]["relmse"]["median"] = 1; }, "configurations[1].error.relmse.median: 1; expected an object"},
+      {[](Json& c) { c["error"]["relmse"]["median"] = 1; },
+       "configurations[1].error.relmse.median: 1; expected an object"},
       {[](Json& c) { c["error"]["relmse"]["median"]["value"] = -1; }, "expected a number that is not negative"},
-      {[](Json& c) { c["pictures"] = {{"crop", {1, 2}}}; }, "configurations[1].pictures.crop: expected 4 numbers"},
+      {[](Json& c) {
+         c["pictures"] = {{"crop", {1, 2}}};
+       },
+       "configurations[1].pictures.crop: expected 4 numbers"},
       {[](Json& c) { c["frames"] = -3; }, "configurations[1].frames: -3"},
   };
   for (const auto& [change, words] : cases) expectHas(changed(change), words);

@@ -1,6 +1,7 @@
 // Small bench files made by hand, for tests that change something in them.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <weir/chart/chart.h>
 #include <weir/chart/page.h>
 #include <weir/core/error.h>
@@ -41,8 +42,9 @@ inline Json configuration(const std::string& id, double ms, double error) {
 }
 
 inline Json bench(std::vector<Json> configurations) {
-  return {{"weir_bench", 1},    {"device", "Made-up device"}, {"driver", "1.0"},
-          {"trace", "pipeline"}, {"weir", "0.0"},              {"configurations", std::move(configurations)}};
+  return {{"weir_bench", 1}, {"device", "Made-up device"},
+          {"driver", "1.0"}, {"trace", "pipeline"},
+          {"weir", "0.0"},   {"configurations", std::move(configurations)}};
 }
 
 inline void expectHas(const std::string& text, const std::string& words) {

@@ -16,7 +16,8 @@ class ChartCommand : public Program {
 TEST_F(ChartCommand, WritesPageAndPicture) {
   if (!TEST_HAS_PAGE) GTEST_SKIP() << "built without the page: no node or no npm";
   const std::string b = input(bench({configuration("a", 4, 0.5)}));
-  const Ran r = weir("chart " + b + " --out " + file("r.html") + " --svg " + file("r.svg") + " --title 'A title' --time wall");
+  const Ran r =
+      weir("chart " + b + " --out " + file("r.html") + " --svg " + file("r.svg") + " --title 'A title' --time wall");
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(r.err, "");
   expectHas(r.out, "1 configurations, 1 scenes");

@@ -71,7 +71,7 @@ TEST_F(BenchText, NothingBreaksOutOfThePage) {
   EXPECT_EQ(count(html, "</script"), 2u);
   EXPECT_EQ(count(html, "<script"), 2u);
   EXPECT_EQ(count(html, "</noscript"), 1u);
-  EXPECT_EQ(count(html, "</title"), 2u);  // of the page and of its still picture
+  EXPECT_EQ(count(html, "</title"), 3u);  // of the page, of its still picture and of the one point in it
   EXPECT_EQ(count(html, "<!--"), 0u);
   const Json data = dataOf(html);  // and all of it still means the same
   EXPECT_EQ(data.at("configurations").at(0).at("data").at("id"), kHostile);
@@ -81,7 +81,8 @@ TEST_F(BenchText, NothingBreaksOutOfThePage) {
 
 TEST_F(BenchText, ATemplateWithoutASlotIsRefused) {
   const chart::Bench b = chart::readBench({write(bench({configuration("a", 4, 0.5)}))});
-  EXPECT_THROW(chart::fillPage("<!--weir:title--><!--weir:data-->", b, view(b, ""), {{}, {{-1, -1, -1}}}), RuntimeError);
+  EXPECT_THROW(chart::fillPage("<!--weir:title--><!--weir:data-->", b, view(b, ""), {{}, {{-1, -1, -1}}}),
+               RuntimeError);
 }
 
 TEST_F(BenchText, TheStillPictureShowsPointsBarsAndFront) {
@@ -122,7 +123,9 @@ TEST_F(BenchText, ExtremeFiguresAreDrawnToo) {
 
 TEST(Xml, HoldsNothingButText) {
   EXPECT_EQ(chart::escapeXml("<a href=\"x\">'&"), "&lt;a href=&quot;x&quot;&gt;&#39;&amp;");
-  EXPECT_EQ(chart::escapeXml(std::string("a\0b\x1b\n", 5)), "a\xef\xbf\xbd" "b\xef\xbf\xbd\n");
+  EXPECT_EQ(chart::escapeXml(std::string("a\0b\x1b\n", 5)),
+            "a\xef\xbf\xbd"
+            "b\xef\xbf\xbd\n");
   EXPECT_EQ(chart::escapeXml("\xef\xbf\xbf\xc3\xa4"), "\xef\xbf\xbd\xc3\xa4");
 }
 
