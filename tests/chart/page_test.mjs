@@ -201,6 +201,7 @@ const tests = {
     await page.emulateMedia({ media: "print" });
     assert.equal(await paper(), "rgb(255, 255, 255)");
     assert.ok(await page.locator("#axes").isHidden());
+    assert.ok(await page.locator("#table code").first().isVisible());
   },
 };
 
@@ -209,6 +210,9 @@ const narrow = {
     assert.equal(await points(page), plotted.length);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     assert.equal(await page.locator("#filters").getAttribute("open"), null);
+    await page.locator("#chart .point[data-front]").first().hover();
+    const box = await page.locator("#tip").boundingBox();
+    assert.ok(box.x >= 0 && box.x + box.width <= 375 && box.y + box.height <= 720, JSON.stringify(box));
   },
 };
 

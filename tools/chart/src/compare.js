@@ -75,7 +75,9 @@ export class Compare {
   }
 
   place() {
-    this.stage.style.setProperty("--split", `${this.split}%`);
+    // With one alone there is nothing to divide.
+    const split = this.pins.A && this.pins.B ? this.split : this.pins.A ? 100 : 0;
+    this.stage.style.setProperty("--split", `${split}%`);
   }
 
   figures() {

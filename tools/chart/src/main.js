@@ -23,7 +23,7 @@ const state = {
 
 const filters = new Filters(dims, update);
 const scatter = new Scatter({ into: byId("chart"), tip: new Tip(byId("tip")), pin: (item) => pin(item) });
-const compare = new Compare({ into: byId("comparison"), clear: (name) => { state.pins[name] = undefined; update(); }, swap });
+const compare = new Compare({ into: byId("comparison"), clear: (name) => { state.pins[name] = undefined; updatePins(); }, swap });
 const table = new Table({ table: byId("table"), more: byId("more"), copied: byId("copied"), pin, mark: (key) => scatter.mark(key) });
 
 /** Without a name: unpins what is pinned, fills what is free, else replaces B. */
@@ -34,12 +34,12 @@ function pin(item, name) {
     if (taken) state.pins[taken] = undefined;
     state.pins[name ?? (state.pins.A ? "B" : "A")] = item;
   }
-  update();
+  updatePins();
 }
 
 function swap() {
   state.pins = { A: state.pins.B, B: state.pins.A };
-  update();
+  updatePins();
 }
 
 /** All that a drawing depends on. */
@@ -51,7 +51,7 @@ function viewOf(themeName, width, height) {
   const dimension = dims.find((d) => d.id === state.color);
   const colors = colorsOf(dimension, theme), symbols = symbolsOf(graphs);
   return {
-    shown, points, front: new Set(all.filter((p) => p.front).map((p) => p.item.key)), lists: legendOf(dimension, graphs, colors, symbols, theme),
+    shown, points, groups, front: new Set(all.filter((p) => p.front).map((p) => p.item.key)), lists: legendOf(dimension, graphs, colors, symbols, theme),
     theme, width, height, time: state.time, error: state.error,
     xLabel: raw.times[state.time].label, yLabel: raw.errors[state.error].label,
     equal: byId("equal").checked, bars: byId("bars").checked,
@@ -80,6 +80,13 @@ function update() {
   byId("shown").textContent = `${view.shown.length} of ${items.length}`;
   compare.update(state.pins, dims.filter((d) => d.values.length > 1), raw);
   table.update({ items: view.shown, front: view.front, time: state.time, error: state.error, pins: state.pins }, dims);
+}
+
+/** What another pin changes: with a thousand rows the rest would be felt. */
+function updatePins() {
+  drawChart();
+  compare.update(state.pins, dims.filter((d) => d.values.length > 1), raw);
+  table.showPins(state.pins);
 }
 
 function applyTheme() {

@@ -77,7 +77,7 @@ function frontLines(points, [, right], [, top]) {
 /**
  * @param {{points: ReturnType<typeof pointsOf>, width: number, height: number, theme: object, xLabel: string,
  *          yLabel: string, equal: boolean, bars: boolean, color: (item) => string, symbol: (item) => string,
- *          pins: {name: string, key: number}[]}} view
+ *          pins: {name: string, key: number}[], groups: string[]}} view
  */
 export function draw(view) {
   const { points, theme } = view;
@@ -105,8 +105,9 @@ export function draw(view) {
       Plot.ruleX(drawn.filter((p) => p.yHigh), { x: "x", y1: (p) => Math.max(p.yLow ?? 0, ys[0]), y2: (p) => Math.min(p.yHigh, ys[1]), ...bar, className: "bar" }),
     );
   }
+  const fronts = frontLines(points, xs, ys), several = new Set(fronts.map((p) => p.group)).size > 1;
   marks.push(
-    Plot.line(frontLines(points, xs, ys), { x: "x", y: "y", z: "group", curve: "step-after", stroke: theme.front, strokeWidth: 1.5, clip: true, className: "front" }),
+    Plot.line(fronts, { x: "x", y: "y", z: "group", curve: "step-after", stroke: theme.front, strokeWidth: 1.5, clip: true, className: "front" }),
     Plot.dot(drawn, {
       x: "x", y: "y", fill: paint, symbol: (p) => view.symbol(p.item), r: (p) => (p.front ? 5.5 : 4),
       stroke: theme.paper, strokeWidth: 0.8, fillOpacity: (p) => (p.front ? 1 : 0.5),
@@ -116,6 +117,10 @@ export function draw(view) {
         [...g.children].forEach((node, i) => (node.dataset.key = drawn[index[i]].item.key));
         return g;
       },
+    }),
+    // Which scene a front is of, where there are several.
+    Plot.text(several ? fronts.filter((p) => p.x === xs[1]) : [], {
+      x: "x", y: "y", text: (p) => view.groups[p.group], textAnchor: "end", dx: -6, dy: -8, fill: theme.ink, stroke: theme.paper, strokeWidth: 4, fontWeight: 600,
     }),
     Plot.dot(pinned, { x: "x", y: "y", r: 10, stroke: theme.ink, strokeWidth: 1.5, className: "pins" }),
     Plot.text(pinned, { x: "x", y: "y", text: "name", dx: 14, dy: -11, fill: theme.ink, stroke: theme.paper, strokeWidth: 4, fontWeight: "bold", fontSize: 13 }),

@@ -80,6 +80,15 @@ export class Table {
     return tr;
   }
 
+  /** Only what is pinned has changed. */
+  showPins(pins) {
+    this.view.pins = pins;
+    for (const button of this.table.querySelectorAll(".pin")) {
+      const item = pins[button.textContent];
+      button.setAttribute("aria-pressed", String(item !== undefined && String(item.key) === button.closest("tr").dataset.key));
+    }
+  }
+
   async copy(item) {
     const done = await copy(item.data.command);
     this.copied.textContent = done ? `Copied the command of ${item.data.id}` : "The browser did not allow copying";

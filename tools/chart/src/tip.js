@@ -38,7 +38,7 @@ export class Tip {
         element("p", {}, "click or Enter: compare")),
       item.pictures[0] ? element("img", { src: item.pictures[0], alt: "crop of a frame" }) : null);
     this.node.hidden = false;
-    const box = this.node.offsetParent.getBoundingClientRect(), own = this.node.getBoundingClientRect();
+    const box = this.node.closest("figure").getBoundingClientRect(), own = this.node.getBoundingClientRect();
     const left = at.x + 18 + own.width < box.width ? at.x + 18 : at.x - own.width - 18;
     this.node.style.left = `${Math.max(Math.min(left, box.width - own.width), 0)}px`;
     this.node.style.top = `${Math.max(Math.min(at.y - own.height / 2, box.height - own.height), 0)}px`;
