@@ -46,11 +46,16 @@ double aboveZero(double value) {
   return value > 0 ? value : kNone;
 }
 
-/// The file's name, or its whole path when two scenes share a name.
+/// What a scene is: its content where that is known, as it may lie elsewhere on another machine.
+const std::string& identity(const Configuration& c) {
+  return c.digest.empty() ? c.scene : c.digest;
+}
+
+/// The file's name; its whole path when another scene has the same name.
 std::string sceneName(const Bench& bench, const Configuration& c) {
   const std::string name = std::filesystem::path(c.scene).filename().string();
   for (const Configuration& other : bench.configurations)
-    if (other.scene != c.scene && std::filesystem::path(other.scene).filename() == name) return c.scene;
+    if (identity(other) != identity(c) && std::filesystem::path(other.scene).filename() == name) return c.scene;
   return name.empty() ? c.scene : name;
 }
 
@@ -113,17 +118,22 @@ Axis chooseError(const Bench& bench, const std::string& given) {
 }
 
 std::vector<Group> groups(const Bench& bench) {
-  // What may set two groups apart, from the most telling on; only what differs somewhere is said.
+  // What sets two groups apart, from the most telling on; only what differs somewhere is said.
   const auto facts = [&](const Configuration& c) {
-    return std::vector<std::string>{
-        c.scene, c.lights, c.camera, fmt::format("{}×{}", c.width, c.height), bench.files[c.file].device, c.digest};
+    return std::vector<std::string>{identity(c),
+                                    c.lights,
+                                    c.camera,
+                                    c.animation,
+                                    fmt::format("{}×{}", c.width, c.height),
+                                    bench.files[c.file].device};
   };
-  std::vector<std::set<std::string>> values(6);
+  std::vector<std::set<std::string>> values(facts(bench.configurations.front()).size());
   for (const Configuration& c : bench.configurations) {
     const std::vector<std::string> f = facts(c);
     for (size_t i = 0; i < f.size(); ++i) values[i].insert(f[i]);
   }
   std::map<std::vector<std::string>, size_t> known;
+  std::set<std::string> labels;
   std::vector<Group> result;
   for (size_t i = 0; i < bench.configurations.size(); ++i) {
     const Configuration& c = bench.configurations[i];
@@ -131,10 +141,10 @@ std::vector<Group> groups(const Bench& bench) {
     const auto [entry, isNew] = known.emplace(f, result.size());
     if (isNew) {
       std::string label = sceneName(bench, c);
-      // A digest says something only where scenes of one name differ in it.
-      const size_t last = values[5].size() > values[0].size() ? 6 : 5;
-      for (size_t k = 1; k < last; ++k)
+      for (size_t k = 1; k < f.size(); ++k)
         if (values[k].size() > 1 && !f[k].empty()) label += ", " + f[k];
+      // A file that changed between two runs.
+      if (!labels.insert(label).second) label += ", " + f[0];
       result.push_back({label, {}});
     }
     result[entry->second].configurations.push_back(i);

@@ -28,12 +28,13 @@ Interval errorOf(const Configuration& c, const std::string& key);
 Axis chooseTime(const Bench& bench, const std::string& given);
 Axis chooseError(const Bench& bench, const std::string& given);
 
-/// Configurations of one scene with its lights, camera and size on one device: a Pareto front is drawn among these
-/// only.
+/// Configurations of one scene (by its digest, where there is one) with its lights, camera, animation and size on one
+/// device: a Pareto front is drawn among these only.
 struct Group {
-  std::string label;  ///< the scene's file, and what else sets this group apart from others
+  std::string label;  ///< the scene's file, and what else sets this group apart; no two are the same
   std::vector<size_t> configurations;
 };
+/// Of a bench that has configurations.
 std::vector<Group> groups(const Bench& bench);
 
 struct Point {

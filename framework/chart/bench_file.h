@@ -34,7 +34,7 @@ struct PicturePaths {
 struct Configuration {
   size_t file = 0;  ///< index in Bench::files
   std::string id, graph, name;
-  std::string scene, digest, lights, camera;
+  std::string scene, digest, lights, camera, animation;
   uint32_t width = 0, height = 0;  ///< pixels
   Times frame, wall;
   std::vector<PassTimes> passes;

@@ -71,9 +71,9 @@ Interval interval(const Place& from, bool mayBeNegative, Json& to) {
   // An interval about a mean may reach below zero where the figure itself can't.
   if (const auto low = from.find("low")) to["low"] = result.low = low->number();
   if (const auto high = from.find("high")) to["high"] = result.high = high->number();
-  if (result.low > result.value || result.high < result.value)
-    from.fail(
-        fmt::format("the interval from {} to {} does not hold the value {}", result.low, result.high, result.value));
+  // Not whether the value is between them: that of a median and the interval of a mean need not agree.
+  if (result.low > result.high)
+    from.fail(fmt::format("the interval ends at {}, below its start {}", result.high, result.low));
   return result;
 }
 
@@ -188,7 +188,8 @@ void readScene(const Place& from, Configuration& c, Json& json) {
   Json scene = Json::object();
   const Place place = from.at("scene");
   scene["file"] = c.scene = place.at("file").text();
-  for (const auto& [key, to] : {std::pair{"digest", &c.digest}, {"lights", &c.lights}, {"camera", &c.camera}}) {
+  for (const auto& [key, to] :
+       {std::pair{"digest", &c.digest}, {"lights", &c.lights}, {"camera", &c.camera}, {"animation", &c.animation}}) {
     if (const auto member = place.find(key)) scene[key] = *to = member->text();
   }
   json["scene"] = std::move(scene);

@@ -90,6 +90,21 @@ TEST_F(BenchText, GroupsAreScenesSizesAndDevices) {
   EXPECT_EQ(all[4].label, "made_up.glb, 64×48, Another device");
 }
 
+TEST_F(BenchText, AScenesContentTellsItApartWhereItIsKnown) {
+  const auto with = [](const char* id, const char* file, const char* digest) {
+    Json c = configuration(id, 1, 1);
+    c["scene"] = {{"file", file}, {"digest", digest}};
+    return c;
+  };
+  const Bench b = chart::readBench(
+      {write(bench({with("a", "here/s.glb", "11"), with("b", "there/s.glb", "11"), with("c", "here/s.glb", "22")}))});
+  const std::vector<chart::Group> all = chart::groups(b);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].configurations, (std::vector<size_t>{0, 1}));
+  EXPECT_EQ(all[0].label, "here/s.glb");
+  EXPECT_EQ(all[1].label, "here/s.glb, 22");
+}
+
 TEST_F(BenchText, OnlyWhatALogAxisCanShowIsAPoint) {
   Json none = configuration("b", 1, 1), zero = configuration("c", 1, 1), still = configuration("d", 0, 1),
        below = configuration("e", 1, 1);

@@ -107,7 +107,7 @@ TEST_F(BenchText, WrongConfigurationsAreRefusedWithTheirPlace) {
       {[](Json& c) { c["frame"]["gpu_ms"] = "fast"; }, "configurations[1].frame.gpu_ms: the text 'fast'"},
       {[](Json& c) { c["settings"]["pick.count"] = {1}; }, "configurations[1].settings.pick.count: an array of 1"},
       {[](Json& c) { c["settings"] = 1; }, "configurations[1].settings: 1; expected an object"},
-      {[](Json& c) { c["error"]["relmse"]["median"]["low"] = 0.6; }, "does not hold the value 0.5"},
+      {[](Json& c) { c["error"]["relmse"]["median"]["low"] = 1.5; }, "the interval ends at 1, below its start 1.5"},
       {[](Json& c) { c["error"]["relmse"]["median"] = 1; },
        "configurations[1].error.relmse.median: 1; expected an object"},
       {[](Json& c) { c["error"]["relmse"]["median"]["value"] = -1; }, "expected a number that is not negative"},
