@@ -31,7 +31,8 @@ std::vector<double> LogAxis::ticks() const {
   if (decades < 1) {
     const double raw = (high_ - low_) / 5, unit = std::pow(10.0, std::floor(std::log10(raw)));
     const double step = unit * (raw / unit > 5 ? 10 : raw / unit > 2 ? 5 : raw / unit > 1 ? 2 : 1);
-    for (double k = std::ceil(low_ / step); k * step <= high_; ++k) result.push_back(k * step);
+    const double first = std::ceil(low_ / step), last = std::floor(high_ / step);
+    for (int i = 0; i <= static_cast<int>(last - first); ++i) result.push_back((first + i) * step);
     return result;
   }
   const int every = std::max(1, static_cast<int>(decades / 8));

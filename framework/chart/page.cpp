@@ -67,7 +67,7 @@ void appendData(std::string& page, const Bench& bench, const View& view, const E
   for (const Group& group : groups(bench))
     head["groups"].push_back({{"label", group.label}, {"configurations", group.configurations}});
   // Members are appended as text: with many configurations one tree of everything would be large.
-  const auto without = [](std::string text) { return text.substr(0, text.size() - 1); };
+  const auto without = [](const std::string& text) { return text.substr(0, text.size() - 1); };
   appendJson(page, without(dump(head)));
   page += ",\"configurations\":[";
   for (size_t i = 0; i < bench.configurations.size(); ++i) {

@@ -97,8 +97,8 @@ class Panel {
   std::string equalTimes() const {
     std::string out = "<g stroke=\"#bbb\" stroke-dasharray=\"2 4\">\n", words = "<g font-size=\"10\" fill=\"#666\">\n";
     const double least = std::log10(x_.low() * y_.low()), most = std::log10(x_.high() * y_.high());
-    const double step = std::max(1.0, std::ceil((most - least) / 10));
-    for (double k = std::ceil(least); k <= most; k += step) {
+    const int step = std::max(1, static_cast<int>(std::ceil((most - least) / 10)));
+    for (int k = static_cast<int>(std::ceil(least)); k <= static_cast<int>(std::floor(most)); k += step) {
       const double c = std::pow(10.0, k);
       const double x0 = std::max(x_.low(), c / y_.high()), x1 = std::min(x_.high(), c / y_.low());
       if (x0 >= x1) continue;

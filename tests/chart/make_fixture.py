@@ -76,12 +76,22 @@ def configuration(number, scene, graph, settings, with_pictures, folder, side, r
     return result
 
 
+def make_hostile(configurations):
+    """What a page must bear: markup in every text, no error measured, an error of zero."""
+    first = configurations[0]
+    first["name"] = first["command"] = first["error"]["reference"]["what"] = HOSTILE
+    first["parameters"]["pick.mode"] = first["settings"]["pick.mode"] = HOSTILE
+    del configurations[1]["error"]
+    configurations[2]["error"]["relmse"]["median"] = {"value": 0, "low": 0, "high": 0}
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("file")
     parser.add_argument("--per-scene", type=int, default=40)
     parser.add_argument("--side", type=int, default=48, help="of the pictures")
     parser.add_argument("--pictures", type=int, default=12, help="configurations that have any")
+    parser.add_argument("--tame", action="store_true", help="nothing that a page must bear: for a look at it")
     options = parser.parse_args()
     folder = options.file.rsplit(".", 1)[0] + ".pictures"
     os.makedirs(folder, exist_ok=True)
@@ -96,12 +106,7 @@ def main():
             graph, settings = grid[i % len(grid)]
             settings = dict(settings, **{"spread.radius": 10 * (1 + i // len(grid))})
             configurations.append(configuration(len(configurations), scene, graph, settings, i < options.pictures, folder, options.side, random))
-    # What a page must bear: markup in every text, no error measured, an error of zero.
-    first = configurations[0]
-    first["name"] = first["command"] = first["error"]["reference"]["what"] = HOSTILE
-    first["parameters"]["pick.mode"] = first["settings"]["pick.mode"] = HOSTILE
-    del configurations[1]["error"]
-    configurations[2]["error"]["relmse"]["median"] = {"value": 0, "low": 0, "high": 0}
+    if not options.tame: make_hostile(configurations)
     with open(options.file, "w", encoding="utf-8") as file:
         json.dump({"weir_bench": 1, "device": "Made-up device", "driver": "made up 1.0", "trace": "pipeline", "weir": "0.0/made-up", "configurations": configurations}, file, indent=1)
 

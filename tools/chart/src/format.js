@@ -8,7 +8,7 @@ export function figure(value) {
   if (value === undefined || value === null || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  if (size >= 1e-3 && size < 1e5) return String(Number(value.toPrecision(3)));
+  if (size >= 1e-4 && size < 1e5) return String(Number(value.toPrecision(3)));
   const [digits, power] = value.toExponential(2).split("e");
   return `${Number(digits)}×10${exponent(Number(power))}`;
 }
@@ -16,7 +16,7 @@ export function figure(value) {
 /** A tick of a logarithmic axis: as short as it can be. */
 export function tick(value) {
   const size = Math.abs(value);
-  if (size >= 1e-3 && size < 1e5) return String(Number(value.toPrecision(6)));
+  if (size >= 1e-4 && size < 1e5) return String(Number(value.toPrecision(6)));
   const [digits, power] = value.toExponential().split("e");
   return `${Number(digits) === 1 ? "" : `${Number(digits)}×`}10${exponent(Number(power))}`;
 }
