@@ -20,8 +20,8 @@ const { chromium } = createRequire(join(options.modules, "x"))("playwright-core"
 const here = dirname(fileURLToPath(import.meta.url)), folder = mkdtempSync(join(tmpdir(), "weir-chart-"));
 
 const bench = join(folder, "made_up.json"), html = join(folder, "report.html"), svg = join(folder, "chart.svg");
-const perScene = 40;
-execFileSync(options.python, [join(here, "make_fixture.py"), bench, "--per-scene", String(perScene)]);
+const perScene = 32;
+execFileSync(options.python, [join(here, "make_fixture.py"), bench, "--per-scene", String(perScene), "--pictures", "6", "--side", "32"]);
 execFileSync(options.weir, ["chart", bench, "--out", html, "--svg", svg, "--title", "Made-up <b>title</b>"]);
 const data = JSON.parse(readFileSync(bench, "utf8")).configurations;
 /** Of the first scene, which is shown at first, those that have an error above zero. */
@@ -99,7 +99,7 @@ const tests = {
     assert.ok(await tip.isVisible());
     const words = await tip.textContent();
     for (const word of ["pick.count", "error", "ms", "p95"]) assert.ok(words.includes(word), `${word} in ${words}`);
-    assert.equal(await tip.locator("img").evaluate((image) => image.decode().then(() => image.naturalWidth)), 48);
+    assert.equal(await tip.locator("img").evaluate((image) => image.decode().then(() => image.naturalWidth)), 32);
     await page.mouse.move(2, 2);
     assert.ok(await tip.isHidden());
   },

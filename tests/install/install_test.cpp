@@ -133,7 +133,8 @@ TEST_F(Installed, FindsItsOwnLibraryPluginsAndShaders) {
 TEST_F(Installed, FindsTheChartPage) {
   if (!TEST_HAS_PAGE) GTEST_SKIP() << "built without the page: no node or no npm";
   const fs::path bench = root() / "bench.json", page = root() / "report.html";
-  std::ofstream(bench) << R"({"weir_bench": 1, "device": "made up", "configurations": [{"id": "a", "graph": "made_up.json",
+  std::ofstream(bench)
+      << R"({"weir_bench": 1, "device": "made up", "configurations": [{"id": "a", "graph": "made_up.json",
     "scene": {"file": "made_up.glb"}, "size": [1, 1], "passes": [], "frame": {"gpu_ms": {"median": 1}}}]})";
   const Ran r = weir("chart " + bench.string() + " --out " + page.string());
   EXPECT_EQ(r.status, 0) << r.err;
