@@ -5,7 +5,7 @@ import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
-import { delimiter, dirname, join } from "node:path";
+import { delimiter, dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { parseArgs } from "node:util";
 import { paretoFront } from "../../tools/chart/src/pareto.js";
@@ -16,7 +16,7 @@ if (!chromiumPath) {
   console.error("SKIPPED: no chromium on the PATH (tools/install-deps.sh installs it); the chart page was not tested");
   process.exit(77);
 }
-const { chromium } = createRequire(join(options.modules, "x"))("playwright-core");
+const { chromium } = createRequire(resolve(options.modules, "x"))("playwright-core");
 const here = dirname(fileURLToPath(import.meta.url)), folder = mkdtempSync(join(tmpdir(), "weir-chart-"));
 
 const bench = join(folder, "made_up.json"), html = join(folder, "report.html"), svg = join(folder, "chart.svg");
