@@ -16,7 +16,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/weir
         FILES_MATCHING PATTERN *.h
         PATTERN gpu/vma.h EXCLUDE PATTERN gpu/probe.h EXCLUDE PATTERN graph/checked.h EXCLUDE
-        PATTERN graph/json_tree.h EXCLUDE PATTERN image/exr_guard.h EXCLUDE PATTERN scene/gltf_*.h EXCLUDE
+        PATTERN graph/json_tree.h EXCLUDE PATTERN chart/place.h EXCLUDE PATTERN chart/configuration.h EXCLUDE PATTERN image/exr_guard.h EXCLUDE PATTERN scene/gltf_*.h EXCLUDE
         PATTERN embed/objects.h EXCLUDE PATTERN embed/call.h EXCLUDE)
 install(FILES ${CMAKE_BINARY_DIR}/generated/weir_vulkan_names.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 # The layouts that plugins share: <weir/passes/common/layouts.h>.

@@ -18,3 +18,4 @@ void addPassesCommand(CLI::App& app);
 void addSceneCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
 void addGraphCommand(CLI::App& app);
+void addChartCommand(CLI::App& app);

@@ -68,6 +68,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
   addCompareCommand(app);
   addVerifyCommand(app);
   addBenchCommand(app);
+  addChartCommand(app);
   addGraphCommand(app);
   addPassesCommand(app);
   addSceneCommand(app);

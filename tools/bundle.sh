@@ -31,6 +31,9 @@ if [ -e "$out" ] && [ ! -f "$out/.weir-bundle" ]; then fail "'$out' exists and i
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 tools/build.sh weir_app
+if grep -q '^build weir_chart:' build/release/build.ninja && ! tools/build.sh weir_chart; then
+  echo "bundle.sh: goes on without the page of weir chart" >&2
+fi
 [ ${#programs[@]} -eq 1 ] || tools/build.sh oracle
 from=build/release/bin
 
@@ -38,6 +41,7 @@ rm -rf "$out"
 mkdir -p "$out/bin" "$out/lib/runtime" "$out/lib/loader" "$out/scenes" "$out/bench"
 touch "$out/.weir-bundle"
 cp "${programs[@]/#/$from/}" "$from"/libweir*.so "$from"/weir_*.json "$out/bin/"
+if [ -f "$from/chart.html" ]; then cp "$from/chart.html" "$out/bin/"; fi
 cp -rL "$from/shaders" "$out/bin/"
 cp -r graphs LICENSE "$out/"
 cp bench/thesis.json "$out/bench/"

@@ -12,9 +12,10 @@ BASE=(
   glslang-dev glslang-tools libglm-dev libtinygltf-dev libstb-dev libopencolorio-dev libopenexr-dev libpng-dev
   libdraco-dev libmeshoptimizer-dev libembree-dev
   nlohmann-json3-dev libcli11-dev libfmt-dev libgtest-dev libbenchmark-dev python3 python3-jsonschema patchelf
-  openimageio-tools
-  parallel
+  openimageio-tools parallel chromium
 )
+# For the page of weir chart. Node from elsewhere brings an npm of its own, whose package Debian's conflicts with.
+if ! command -v node >/dev/null || ! command -v npm >/dev/null; then BASE+=(nodejs npm); fi
 # Mesa of plain Debian 12 (22.3) has no ray tracing in its software device; the one in backports has.
 BACKPORTS=(mesa-vulkan-drivers)
 # An architecture-independent header that Debian has had since 13; it depends on nothing of that release.

@@ -129,6 +129,18 @@ TEST_F(Installed, FindsItsOwnLibraryPluginsAndShaders) {
   EXPECT_EQ(r.status, 0) << r.err;
 }
 
+// The page lies in share/weir there, not beside the library.
+TEST_F(Installed, FindsTheChartPage) {
+  if (!TEST_HAS_PAGE) GTEST_SKIP() << "built without the page: no node or no npm";
+  const fs::path bench = root() / "bench.json", page = root() / "report.html";
+  std::ofstream(bench)
+      << R"({"weir_bench": 1, "device": "made up", "configurations": [{"id": "a", "graph": "made_up.json",
+    "scene": {"file": "made_up.glb"}, "size": [1, 1], "passes": [], "frame": {"gpu_ms": {"median": 1}}}]})";
+  const Ran r = weir("chart " + bench.string() + " --out " + page.string());
+  EXPECT_EQ(r.status, 0) << r.err;
+  EXPECT_TRUE(has(read(page), "<title>Error against time: made_up.glb</title>"));
+}
+
 TEST_F(Installed, HeadersNeedNothingThatIsNotInstalled) {
   const fs::path project = root() / "headers";
   fs::create_directories(project);
