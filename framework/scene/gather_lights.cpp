@@ -235,7 +235,12 @@ void gatherLights(const Scene& scene, PreparedScene& prepared, const Clip* clip)
   }
   prepared.traits.triangleLights = !gathered.lights.empty();
   prepared.triangleLights = static_cast<uint32_t>(gathered.lights.size());
+  const auto shaped = [](const GpuLight& light) {
+    return light.kind != static_cast<uint32_t>(GpuLightKind::Point) || light.b.z > 0.0f;
+  };
   gatherPunctual(scene, prepared, clip != nullptr ? movingNodes(scene, *clip) : std::vector<char>(), gathered);
+  prepared.traits.shapedLights =
+      std::any_of(gathered.lights.begin() + prepared.triangleLights, gathered.lights.end(), shaped);
   prepared.environment = tabulate(scene.environment);
   prepared.traits.environment = scene.environment.shines();
   gatherEnvironment(prepared, gathered);

@@ -1,5 +1,8 @@
 #include "common/layouts.h"
 #include "restir_di/restir_di.h"
+#include "restir_di/tiles.h"
+
+#include <string>
 
 namespace weir::passes {
 
@@ -23,6 +26,11 @@ void Initial::describe(PassDescription& d) {
       .doc(
           "Share of the candidates picked uniformly among all lights, the rest by power: bounds the error of dim "
           "lights close by");
+  d.param("tiles", "auto")
+      .oneOf({"auto", "on", "off"})
+      .doc(
+          "Candidates from tiles of lights drawn beforehand, whose cost doesn't grow with the number of lights, or from "
+          "the whole table; auto: tiles from 4096 lights on");
   d.param("triangles", "solidAngle")
       .oneOf({"area", "solidAngle"})
       .specialises()
@@ -45,10 +53,24 @@ void Initial::prepare(PrepareContext& c) {
   KernelOptions options;
   const bool rays = c.integer("bsdfRays") > 0;
   if (rays) options.defines.emplace_back("BSDF_RAYS", "1");
+  const LightSummary lights = c.lights();
+  tiled_ = usesTiles(c.text("tiles"), lights);
+  if (tiled_) {
+    c.scratch("tiles", fixedBuffer<TileSample>(kTileEntries));
+    c.scratch("tileIndices", fixedBuffer<TileIndex>(kTileEntries));
+    options.defines.emplace_back("TILE_SIZE", std::to_string(kTileSize));
+    options.defines.emplace_back("TILE_COUNT", std::to_string(kTileCount));
+    if (!lights.pointsOnly) {
+      c.scratch("tileLights", fixedBuffer<TileLight>(kTileEntries));
+      options.defines.emplace_back("TILE_LIGHTS", "1");
+    }
+    presample_ = c.kernel("presample.glsl", options);
+  }
   kernel_ = rays || c.boolean("visibility") ? c.rayKernel("initial.glsl", options) : c.kernel("initial.glsl", options);
 }
 
 void Initial::record(RecordContext& c) {
+  if (tiled_) c.launch(presample_, kTileSize, kTileCount, 0);
   c.launch(kernel_);
 }
 

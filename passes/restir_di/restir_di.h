@@ -15,7 +15,8 @@ class Initial final : public Pass {
   void record(RecordContext& c) override;
 
  private:
-  Kernel kernel_;
+  bool tiled_ = false;
+  Kernel presample_, kernel_;
 };
 
 /// Merges each pixel's reservoirs with those its surface had last frame.

@@ -1,10 +1,15 @@
 // Initial candidates by streaming RIS (Talbot et al. 2005; Bitterli et al. 2020, algorithm 3): M lights picked by power, one kept in
 // proportion to p̂/p. The environment is also found by directions that the BSDF prefers, points on triangles along its specular lobe,
-// and both by rays along the BSDF. Several reservoirs of a pixel share the candidates and choose from them independently.
+// and both by rays along the BSDF. With tiles the lights are picked beforehand (tiles.glsl). Several reservoirs of a pixel share the
+// candidates and choose from them independently.
 #include "mutants.glsl"
 #include "random.glsl"
 #include "reservoir.glsl"
 #include "light_sample.glsl"
+
+#ifdef TILE_SIZE
+#include "tiles.glsl"
+#endif
 
 const int kByArea = 0, kBySolidAngle = 1;
 
@@ -19,10 +24,12 @@ Candidate drawCandidate(Light light, uvec2 bits, Surface surface, inout Random r
     return c;
   }
 #endif
+#ifdef SCENE_TRIANGLE_LIGHTS
   const vec2 u = vec2(uniformFloat(bits.x), uniformFloat(bits.y));
   if ((light.kind & kKindMask) == kTriangle) return drawOnTriangle(light, u, surface, triangleWays());
-  c.place = packPlace(u);
-  c.light = evaluateLight(light, c.place, surface.position);
+#endif
+  c.place = 0u;
+  c.light = evaluatePunctual(light, surface.position);
   c.spread = c.light.area;
   return c;
 }
@@ -103,6 +110,77 @@ void offerRay(inout Selection selections[out_reservoirs_count], Surface surface,
 }
 #endif
 
+void offerLight(inout Selection selections[out_reservoirs_count], uint chosen, Light light, uvec2 bits, Surface surface,
+                inout Random random) {
+  const Candidate c = drawCandidate(light, bits, surface, random);
+  const float target = targetFunction(surface, c.light);
+  if (!(target > 0.0)) return;
+  // 1/M · p̂ / p, with p = pdf of the light times density on it.
+  float weight = target * c.spread / (mixedPdf(light, param_uniformShare) * float(MUTANT(30, param_candidates + 1, param_candidates)));
+#ifdef BSDF_RAYS
+  if ((light.kind & kKindMask) == kTriangle) weight = triangleWeight(surface, light, c.light, 1.0 / c.spread, target);
+#endif
+#ifdef SCENE_ENVIRONMENT
+  if ((light.kind & kKindMask) == kEnvironment) weight = environmentWeight(surface, light, c.light, 1.0 / c.spread, target);
+#endif
+#if !defined(SCENE_TRIANGLE_LIGHTS) && !defined(SCENE_ENVIRONMENT)
+  // No place was drawn, which leaves these bits.
+  if (out_reservoirs_count == 1u) {
+    offer(selections[0], chosen, c.place, target, weight, false, uniformFloat(bits.x));
+    return;
+  }
+#endif
+  offerAll(selections, chosen, c.place, target, weight, false, random);
+}
+
+#ifdef TILE_SIZE
+void drawFromTile(inout Selection selections[out_reservoirs_count], uvec2 pixel, Surface surface, inout Random random) {
+  const TileReader reader = tileReader(pixel, uint(param_candidates));
+  vec4 keep;  // one hash for four candidates, where there is one reservoir to keep them in
+  for (int i = 0; i < param_candidates; ++i) {
+    if (out_reservoirs_count > 1u || (i & 3) == 0) keep = next4(random);
+    const uint entry = tileEntry(reader, uint(i));
+    const TileSample tile = scratch_tiles[entry];
+#ifdef TILE_LIGHTS
+    if (tile.color == 0u) {
+      const TileLight t = scratch_tileLights[entry];
+      const Light light = Light(t.position, t.kind, t.a, t.triangle, t.b, t.area, t.radiance, t.pdf);
+      offerLight(selections, scratch_tileIndices[entry].light, light, nextBits4(random).zw, surface, random);
+      continue;
+    }
+#endif
+    const vec3 way = tile.position - surface.position;
+    const float d2 = dot(way, way);
+    if (!(d2 > 0.0)) continue;
+    LightSample light;
+    light.direction = way * inversesqrt(d2);
+    light.radiance = unpackColor(tile.color) / d2;
+    const float share = targetFunction(surface, light);  // p̂ over the light's probability
+    const float weight = share / float(param_candidates);
+    for (uint k = 0u; k < out_reservoirs_count; ++k) {
+      offer(selections[k], entry | kTileEntry, 0u, share, weight, false, keep.x);
+      keep = keep.yzwx;
+    }
+  }
+  for (uint k = 0u; k < out_reservoirs_count; ++k) {
+    if ((selections[k].light & kTileEntry) == 0u) continue;
+    selections[k].light = scratch_tileIndices[selections[k].light & ~kTileEntry].light;
+    selections[k].target *= MUTANT(37, sceneLights[selections[k].light].pdf,
+                                   mixedPdf(sceneLights[selections[k].light], param_uniformShare));
+  }
+}
+#else
+void drawFromTable(inout Selection selections[out_reservoirs_count], Surface surface, inout Random random) {
+  for (int i = 0; i < param_candidates; ++i) {
+    uvec4 bits = nextBits4(random);
+    // One pick in each part of the table: together they have its distribution, with less chance in how often a light comes.
+    bits.x = stratumBits(bits.x, uint(i), uint(param_candidates));
+    const uint chosen = pickMixed(bits.xy, param_uniformShare);
+    offerLight(selections, chosen, sceneLights[chosen], bits.zw, surface, random);
+  }
+}
+#endif
+
 void run(uvec2 pixel) {
   const uint index = pixel.y * frameWidth + pixel.x;
   const PackedSurface packed = in_surface[index];
@@ -114,27 +192,11 @@ void run(uvec2 pixel) {
   if (lit) {
     surface = unpackSurface(packed, pixel, camera, frameSize);
     Random random = randomFor(pixel, 0u);
-    for (int i = 0; i < param_candidates; ++i) {
-      uvec4 bits = nextBits4(random);
-      // One pick in each part of the table: together they have its distribution, with less chance in how often a light comes.
-      bits.x = stratumBits(bits.x, uint(i), uint(param_candidates));
-      const uint chosen = pickMixed(bits.xy, param_uniformShare);
-      const Light light = sceneLights[chosen];
-      const Candidate c = drawCandidate(light, bits.zw, surface, random);
-      const float target = targetFunction(surface, c.light);
-      if (!(target > 0.0)) continue;
-      // 1/M · p̂ / p, with p = pdf of the light times density on it.
-      float weight = target * c.spread / (mixedPdf(light, param_uniformShare) * float(MUTANT(30, param_candidates + 1, param_candidates)));
-#ifdef BSDF_RAYS
-      if ((light.kind & kKindMask) == kTriangle) weight = triangleWeight(surface, light, c.light, 1.0 / c.spread, target);
+#ifdef TILE_SIZE
+    drawFromTile(selections, pixel, surface, random);
+#else
+    drawFromTable(selections, surface, random);
 #endif
-#ifdef SCENE_ENVIRONMENT
-      if ((light.kind & kKindMask) == kEnvironment) {
-        weight = environmentWeight(surface, light, c.light, 1.0 / c.spread, target);
-      }
-#endif
-      offerAll(selections, chosen, c.place, target, weight, false, random);
-    }
 #ifdef SCENE_ENVIRONMENT
     const uint last = lightCount() - 1u;  // where the environment is
     const Light environment = sceneLights[last];

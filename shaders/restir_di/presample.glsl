@@ -1,0 +1,30 @@
+// Fills the tiles (tiles.glsl): one light by power and uniformly for each entry. The entries of a tile come from as many equal parts of the
+// table, one each: together they have its distribution, with less chance in how often a light comes.
+#include "mutants.glsl"
+#include "lights.glsl"
+#include "tiles.glsl"
+
+// `id`: entry and tile.
+void run(uvec2 id) {
+  Random random = randomFor(id, 1u);
+  uvec4 bits = nextBits4(random);
+  bits = MUTANT(35, pcg4d(uvec4(id, 0u, 0u)), bits);
+  bits.x = id.x * (0x80000000u / uint(TILE_SIZE / 2)) + bits.x / uint(TILE_SIZE);
+  const uint chosen = pickMixed(bits.xy, param_uniformShare);
+  const Light light = sceneLights[chosen];
+  const uint entry = id.y * uint(TILE_SIZE) + id.x;
+  scratch_tileIndices[entry].light = chosen;
+  TileSample tile = TileSample(light.position, 0u);
+#ifdef SCENE_SHAPED_LIGHTS
+  const bool plain = (light.kind & kKindMask) == kPoint && !(light.b.z > 0.0);
+#else
+  const bool plain = (light.kind & kKindMask) == kPoint;
+#endif
+  if (plain) tile.color = packColor(light.radiance / MUTANT(34, light.pdf, mixedPdf(light, param_uniformShare)));
+  scratch_tiles[entry] = tile;
+#ifdef TILE_LIGHTS
+  if (tile.color == 0u) {
+    scratch_tileLights[entry] = TileLight(light.position, light.kind, light.a, light.triangle, light.b, light.area, light.radiance, light.pdf);
+  }
+#endif
+}
