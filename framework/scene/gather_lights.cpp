@@ -145,6 +145,8 @@ void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered
 
 void gatherPunctual(const Scene& scene, const PreparedScene& prepared, const std::vector<char>& moving, Gathered& out) {
   const double radius = prepared.bounds.radius();
+  out.lights.reserve(out.lights.size() + scene.lights.size() + 1);  // and an environment
+  out.power.reserve(out.lights.capacity());
   for (const PunctualLight& from : scene.lights) {
     GpuLight light;
     light.radiance = from.intensity;

@@ -9,7 +9,8 @@ void run(uvec2 id) {
   Random random = randomFor(id, 1u);
   uvec4 bits = nextBits4(random);
   bits = MUTANT(35, pcg4d(uvec4(id, 0u, 0u)), bits);
-  bits.x = id.x * (0x80000000u / uint(TILE_SIZE / 2)) + bits.x / uint(TILE_SIZE);
+  // All of the 32 bits' range: with stratumBits() the last light of millions would come too rarely.
+  bits.x = id.x * (MUTANT(34, 0x40000000u, 0x80000000u) / uint(TILE_SIZE / 2)) + bits.x / uint(TILE_SIZE);
   const uint chosen = pickMixed(bits.xy, param_uniformShare);
   const Light light = sceneLights[chosen];
   const uint entry = id.y * uint(TILE_SIZE) + id.x;
@@ -20,7 +21,7 @@ void run(uvec2 id) {
 #else
   const bool plain = (light.kind & kKindMask) == kPoint;
 #endif
-  if (plain) tile.color = packColor(light.radiance / MUTANT(34, light.pdf, mixedPdf(light, param_uniformShare)));
+  if (plain) tile.color = packColor(light.radiance / mixedPdf(light, param_uniformShare));
   scratch_tiles[entry] = tile;
 #ifdef TILE_LIGHTS
   if (tile.color == 0u) {
