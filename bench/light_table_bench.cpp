@@ -88,7 +88,7 @@ void lightTable(benchmark::State& state) {
     const gpu::Buffer pdfs(*device, uint64_t{64} * lights, kStorage, gpu::Residency::Device, "lights");
     shader::Compiler compiler;
     const execute::LightTable table(*device, compiler, lights, powers.handle(), cells.handle(),
-                                    {{pdfs.handle(), 16, 15}});
+                                    {{pdfs.handle(), 16, 7}});
     const Clock clock(*device);
     const auto build = [&](VkCommandBuffer commands) { table.record(commands, 0); };
     clock.milliseconds(build);

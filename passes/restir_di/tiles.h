@@ -36,12 +36,12 @@ struct TileIndex {
 struct TileLight {
   float position[3];
   uint32_t kind;
+  float radiance[3];
+  float pdf;
   float a[3];
   uint32_t triangle;
   float b[3];
   float area;
-  float radiance[3];
-  float pdf;
 };
 
 /// `choice` is the parameter: auto, on or off.
@@ -74,12 +74,12 @@ struct LayoutOf<passes::TileLight> {
   static constexpr uint32_t version = 1, emptyWord = 0;
   static constexpr std::array<Field, 8> fields{{{"vec3", "position"},
                                                 {"uint", "kind"},
+                                                {"vec3", "radiance"},
+                                                {"float", "pdf"},
                                                 {"vec3", "a"},
                                                 {"uint", "triangle"},
                                                 {"vec3", "b"},
-                                                {"float", "area"},
-                                                {"vec3", "radiance"},
-                                                {"float", "pdf"}}};
+                                                {"float", "area"}}};
 };
 
 }  // namespace weir

@@ -144,7 +144,7 @@ void drawFromTile(inout Selection selections[out_reservoirs_count], uvec2 pixel,
 #ifdef TILE_LIGHTS
     if (tile.color == 0u) {
       const TileLight t = scratch_tileLights[entry];
-      const Light light = Light(t.position, t.kind, t.a, t.triangle, t.b, t.area, t.radiance, t.pdf);
+      const Light light = Light(t.position, t.kind, t.radiance, t.pdf, t.a, t.triangle, t.b, t.area);
       offerLight(selections, scratch_tileIndices[entry].light, light, nextBits4(random).zw, surface, random);
       continue;
     }

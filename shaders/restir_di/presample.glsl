@@ -25,7 +25,8 @@ void run(uvec2 id) {
   scratch_tiles[entry] = tile;
 #ifdef TILE_LIGHTS
   if (tile.color == 0u) {
-    scratch_tileLights[entry] = TileLight(light.position, light.kind, light.a, light.triangle, light.b, light.area, light.radiance, light.pdf);
+    scratch_tileLights[entry] =
+        TileLight(light.position, light.kind, light.radiance, light.pdf, light.a, light.triangle, light.b, light.area);
   }
 #endif
 }
