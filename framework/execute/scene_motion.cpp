@@ -12,6 +12,7 @@ namespace {
 
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr VkBufferUsageFlags kWritten = kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+constexpr VkBufferUsageFlags kRead = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;  // by tests
 
 /// As shaders/common/deform.glsl reads it.
 struct DeformPush {
@@ -24,8 +25,12 @@ constexpr uint32_t kDeformGroup = 64, kMostGroups = 65535;
 
 }  // namespace
 
-SceneMotion::SceneMotion(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene)
-    : device_(device), scene_(scene), prepared_(scene.prepared()) {
+SceneMotion::SceneMotion(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene,
+                         bool tableOnDevice)
+    : device_(device),
+      scene_(scene),
+      prepared_(scene.prepared()),
+      tableOnDevice_(tableOnDevice && LightTable::supported(device)) {
   state_ = scene::StateMaker(scene.source(), prepared_).at(scene::restPose(scene.source()), false);
   packed_ = scene::packInstances(prepared_, draws_);
   topInstances_.resize(packed_.size());
@@ -70,7 +75,7 @@ void SceneMotion::layOut() {
   if (!prepared_.movingLights.empty()) {
     lightsPart_ = part(prepared_.lights.size() * sizeof(scene::GpuLight));
     if (prepared_.lightPowerChanges()) {
-      if (LightTable::supported(device_))
+      if (tableOnDevice_)
         powersPart_ = part(prepared_.lights.size() * sizeof(float));
       else
         aliasPart_ = part(prepared_.lights.size() * sizeof(scene::AliasCell));
@@ -85,10 +90,10 @@ void SceneMotion::layOut() {
 void SceneMotion::makeLights(shader::Compiler& compiler) {
   if (lightsPart_.size == 0) return;
   for (gpu::Buffer& lights : lights_)
-    lights = gpu::Buffer(device_, lightsPart_.size, kWritten, gpu::Residency::Device, "moving lights");
+    lights = gpu::Buffer(device_, lightsPart_.size, kWritten | kRead, gpu::Residency::Device, "moving lights");
   if (!prepared_.lightPowerChanges()) return;
   const auto count = static_cast<uint32_t>(prepared_.lights.size());
-  alias_ = gpu::Buffer(device_, count * sizeof(scene::AliasCell), kWritten, gpu::Residency::Device,
+  alias_ = gpu::Buffer(device_, count * sizeof(scene::AliasCell), kWritten | kRead, gpu::Residency::Device,
                        "moving lights' alias table");
   if (powersPart_.size == 0) return;
   powers_ = gpu::Buffer(device_, powersPart_.size, kWritten, gpu::Residency::Device, "moving lights' powers");

@@ -22,8 +22,10 @@ class SceneMotion {
  public:
   static constexpr uint32_t kSlots = 2;  ///< frames in flight
 
-  /// The scene must outlive this.
-  SceneMotion(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene);
+  /// The scene must outlive this. `tableOnDevice`: whether the device builds the alias table of lights whose powers
+  /// change, where it can; else the CPU does.
+  SceneMotion(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene,
+              bool tableOnDevice = true);
   ~SceneMotion();
   SceneMotion(const SceneMotion&) = delete;
   SceneMotion& operator=(const SceneMotion&) = delete;
@@ -65,6 +67,7 @@ class SceneMotion {
   std::vector<VkAccelerationStructureInstanceKHR> topInstances_;
 
   std::array<gpu::Buffer, 2> instances_, lights_, positions_;
+  bool tableOnDevice_;
   gpu::Buffer alias_, powers_, vertices_, influences_, deltas_, flat_, joints_, weights_;
   gpu::Buffer staging_;
   uint64_t slotBytes_ = 0;

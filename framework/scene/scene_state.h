@@ -10,15 +10,15 @@
 namespace weir::scene {
 
 struct SceneState {
-  std::vector<glm::mat4> toWorld;  ///< beside PreparedScene::instances
-  std::vector<char> flipsWinding;  ///< likewise
-  std::vector<glm::mat4> joints;   ///< of PreparedScene::posedSkins, one skin after another; into the world
-  std::vector<float> weights;      ///< of PreparedScene::posedNodes, one node after another
-  std::vector<GpuLight> lights;    ///< beside PreparedScene::lights
+  std::vector<glm::mat4> toWorld;     ///< beside PreparedScene::instances
+  std::vector<char> flipsWinding;     ///< likewise
+  std::vector<glm::mat4> joints;      ///< of PreparedScene::posedSkins, one skin after another; into the world
+  std::vector<float> weights;         ///< of PreparedScene::posedNodes, one node after another
+  std::vector<GpuLight> lights;       ///< beside PreparedScene::lights
   std::vector<AliasCell> aliasTable;  ///< likewise; unless left out, see StateMaker::at
   std::vector<double> power;          ///< weights of the table, where they change: PreparedScene::lightPowerChanges
-  Bounds bounds;             ///< contain all geometry, in the world; loose around what deforms
-  float largestSide = 0.0f;  ///< no side of any triangle is longer, metres
+  Bounds bounds;                      ///< contain all geometry, in the world; loose around what deforms
+  float largestSide = 0.0f;           ///< no side of any triangle is longer, metres
 };
 
 /// Makes states of one scene. The references must outlive it. Throws RuntimeError when a transform is not finite.

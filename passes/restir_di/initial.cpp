@@ -29,7 +29,8 @@ void Initial::describe(PassDescription& d) {
   d.param("tiles", "auto")
       .oneOf({"auto", "on", "off"})
       .doc(
-          "Candidates from tiles of lights drawn beforehand, whose cost doesn't grow with the number of lights, or from "
+          "Candidates from tiles of lights drawn beforehand, whose cost doesn't grow with the number of lights, or "
+          "from "
           "the whole table; auto: tiles from 4096 lights on");
   d.param("triangles", "solidAngle")
       .oneOf({"area", "solidAngle"})

@@ -36,8 +36,7 @@ Built build(const std::vector<float>& powers) {
   constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
   const size_t n = powers.size();
   const gpu::Buffer in = gpu::uploadBuffer(*device, powers, kUsage, "powers");
-  const gpu::Buffer cells =
-      gpu::uploadBuffer(*device, std::vector<uint32_t>(2 * n, 0xcdcdcdcdu), kUsage, "cells");
+  const gpu::Buffer cells = gpu::uploadBuffer(*device, std::vector<uint32_t>(2 * n, 0xcdcdcdcdu), kUsage, "cells");
   const gpu::Buffer pdfs = gpu::uploadBuffer(*device, std::vector<float>(7 * n + 2, -1.0f), kUsage, "pdfs");
   shader::Compiler compiler;
   const LightTable table(*device, compiler, static_cast<uint32_t>(n), in.handle(), cells.handle(),

@@ -132,8 +132,7 @@ scene::Scene manyLights(bool mixture) {
   b.add(quad({-2, 0, -2}, {2, 0, -2}, {2, 3, -2}, {-2, 3, -2}, greyOne));
   b.add(quad({-0.3f, 0, 0.2f}, {0.3f, 0, 0}, {0.3f, 1.3f, 0}, {-0.3f, 1.3f, 0.2f}, greyOne));
   if (mixture)
-    b.add(quad({-1.2f, 2.6f, -0.6f}, {-0.4f, 2.6f, -0.6f}, {-0.4f, 2.6f, 0.2f}, {-1.2f, 2.6f, 0.2f},
-               b.material(lamp)));
+    b.add(quad({-1.2f, 2.6f, -0.6f}, {-0.4f, 2.6f, -0.6f}, {-0.4f, 2.6f, 0.2f}, {-1.2f, 2.6f, 0.2f}, b.material(lamp)));
   for (int i = 0; i < 60; ++i) {
     scene::PunctualLight light;
     light.position = {-1.8f + 0.4f * static_cast<float>(i % 10), 2.6f - 0.3f * static_cast<float>(i % 3),
@@ -161,8 +160,8 @@ TEST(RestirTiles, ReuseStaysUnbiased) {
     laboratory.measureTruth("1", 24, 4);
     for (const char* mis : {"pairwise", "z"}) {
       Protocol p;
-      p.set = {"gbuffer.jitter=true", "initial.candidates=4", "initial.tiles=on", "temporal.confidenceCap=4",
-               "spatial.radius=8",    "spatial.neighbours=3"};
+      p.set = {"gbuffer.jitter=true",      "initial.candidates=4", "initial.tiles=on",
+               "temporal.confidenceCap=4", "spatial.radius=8",     "spatial.neighbours=3"};
       for (const std::string pass : {"temporal", "spatial"})
         for (const char* setting : {"depthThreshold=10", "normalThreshold=180", "visibilityRays=true"})
           p.set.push_back(pass + "." + setting);
