@@ -153,8 +153,9 @@ void drawFromTile(inout Selection selections[out_reservoirs_count], uvec2 pixel,
     const float d2 = dot(way, way);
     if (!(d2 > 0.0)) continue;
     LightSample light;
-    light.direction = way * inversesqrt(d2);
-    light.radiance = unpackColor(tile.color) / d2;
+    const float inverse = inversesqrt(d2);
+    light.direction = way * inverse;
+    light.radiance = unpackColor(tile.color) * (inverse * inverse);
     const float share = targetFunction(surface, light);  // p̂ over the light's probability
     const float weight = share / float(param_candidates);
     for (uint k = 0u; k < out_reservoirs_count; ++k) {
