@@ -8,13 +8,12 @@
 void run(uvec2 id) {
   Random random = randomFor(id, 1u);
   uvec4 bits = nextBits4(random);
-  bits = MUTANT(35, pcg4d(uvec4(id, 0u, 0u)), bits);
   // All of the 32 bits' range: with stratumBits() the last light of millions would come too rarely.
   bits.x = id.x * (MUTANT(34, 0x40000000u, 0x80000000u) / uint(TILE_SIZE / 2)) + bits.x / uint(TILE_SIZE);
   const uint chosen = pickMixed(bits.xy, param_uniformShare);
   const Light light = sceneLights[chosen];
   const uint entry = id.y * uint(TILE_SIZE) + id.x;
-  scratch_tileIndices[entry].light = chosen;
+  scratch_tileIndices[entry].light = MUTANT(35, (chosen + 1u) % lightCount(), chosen);
   TileSample tile = TileSample(light.position, 0u);
 #ifdef SCENE_SHAPED_LIGHTS
   const bool plain = (light.kind & kKindMask) == kPoint && !(light.b.z > 0.0);

@@ -43,7 +43,7 @@ std::vector<Mutant> makeMutants() {
       {32, "a ray's density is left per steradian", "rays", {}, true},
       {33, "lamps that rays find keep all their weight", "rays", {}, true},
       {34, "tiles hold the first half of the table alone", "tiles", {}, true},
-      {35, "tiles are drawn once for all", "tiles", {}, true},
+      {35, "what is chosen from a tile is looked up as the light beside it", "tiles", {}, true},
       {36, "pixels read the same place of every tile", "tiles", {}, true},
       {37, "W forgets the uniform share of what a tile was drawn with", "tiles", {}, true},
       {40, "points on triangles are not uniform in area", "room-area"},
