@@ -48,6 +48,18 @@ bool Answers<Base>::connected(std::string_view input) const {
   throw InputError(fmt::format("{} ({}) asks for input '{}', which it doesn't declare", pass.name, pass.type, input));
 }
 
+template <typename Base>
+LightSummary Answers<Base>::lights() const {
+  const graph::CompiledPass& pass = runtime_.compiled();
+  if (!pass.description->has(Need::SceneLights)) {
+    throw InputError(
+        fmt::format("{} ({}) asks for the scene's lights but doesn't declare scene.lights", pass.name, pass.type));
+  }
+  const scene::SceneGpu& scene = runtime_.shared_.frame->scene();
+  const scene::SceneTraits& traits = scene.traits;
+  return {scene.lightCount, !traits.triangleLights && !traits.shapedLights && !traits.environment};
+}
+
 template class Answers<PrepareContext>;
 template class Answers<RecordContext>;
 

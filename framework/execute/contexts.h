@@ -18,6 +18,7 @@ class Answers : public Base {
   uint32_t width() const override { return runtime_.shared_.graph->width; }
   uint32_t height() const override { return runtime_.shared_.graph->height; }
   std::string sceneFolder() const override { return runtime_.shared_.sceneFolder; }
+  LightSummary lights() const override;
 
  protected:
   PassRuntime& runtime_;

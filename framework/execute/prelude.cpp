@@ -20,7 +20,7 @@ struct Material {
 };
 struct Specular { vec3 f0; float weight; int colorTexture, weightTexture; uvec2 pad; };
 struct TextureUse { vec4 linear; vec2 offset; uint uvSet; float texelLevel; };
-struct Light { vec3 position; uint kind; vec3 a; uint triangle; vec3 b; float area; vec3 radiance; float pdf; };
+struct Light { vec3 position; uint kind; vec3 radiance; float pdf; vec3 a; uint triangle; vec3 b; float area; };
 struct AliasCell { float threshold; uint alias; };
 layout(set = 0, binding = 0, std140) uniform FrameBlock {
   Camera camera, previousCamera;

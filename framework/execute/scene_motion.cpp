@@ -1,8 +1,10 @@
 #include <weir/core/paths.h>
 #include <weir/execute/scene_motion.h>
 #include <weir/gpu/barrier.h>
+#include <weir/scene/gather_lights.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 namespace weir::execute {
@@ -10,6 +12,7 @@ namespace {
 
 constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr VkBufferUsageFlags kWritten = kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+constexpr VkBufferUsageFlags kRead = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;  // by tests
 
 /// As shaders/common/deform.glsl reads it.
 struct DeformPush {
@@ -22,21 +25,21 @@ constexpr uint32_t kDeformGroup = 64, kMostGroups = 65535;
 
 }  // namespace
 
-SceneMotion::SceneMotion(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene)
-    : device_(device), scene_(scene), prepared_(scene.prepared()) {
-  state_ = scene::StateMaker(scene.source(), prepared_).at(scene::restPose(scene.source()));
+SceneMotion::SceneMotion(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene,
+                         bool tableOnDevice)
+    : device_(device),
+      scene_(scene),
+      prepared_(scene.prepared()),
+      tableOnDevice_(tableOnDevice && LightTable::supported(device)) {
+  state_ = scene::StateMaker(scene.source(), prepared_).at(scene::restPose(scene.source()), false);
   packed_ = scene::packInstances(prepared_, draws_);
   topInstances_.resize(packed_.size());
   layOut();
   staging_ = gpu::Buffer(device, kSlots * slotBytes_, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Residency::Upload,
                          "scene motion staging");
-  for (uint32_t h = 0; h < 2; ++h) {
+  for (uint32_t h = 0; h < 2; ++h)
     instances_[h] = gpu::Buffer(device, instancesPart_.size, kWritten, gpu::Residency::Device, "moving instances");
-    if (lightsPart_.size > 0)
-      lights_[h] = gpu::Buffer(device, lightsPart_.size, kWritten, gpu::Residency::Device, "moving lights");
-  }
-  if (aliasPart_.size > 0)
-    alias_ = gpu::Buffer(device, aliasPart_.size, kWritten, gpu::Residency::Device, "moving lights' alias table");
+  makeLights(compiler);
   const bool traces = scene.hasAcceleration();
   std::array<VkDeviceAddress, 2> addresses{};
   if (prepared_.traits.deforms) {
@@ -71,12 +74,33 @@ void SceneMotion::layOut() {
   instancesPart_ = part(packed_.size() * sizeof(scene::GpuInstance));
   if (!prepared_.movingLights.empty()) {
     lightsPart_ = part(prepared_.lights.size() * sizeof(scene::GpuLight));
-    aliasPart_ = part(prepared_.lights.size() * sizeof(scene::AliasCell));
+    if (prepared_.lightPowerChanges()) {
+      if (tableOnDevice_)
+        powersPart_ = part(prepared_.lights.size() * sizeof(float));
+      else
+        aliasPart_ = part(prepared_.lights.size() * sizeof(scene::AliasCell));
+    }
   }
   jointsPart_ = part(state_.joints.size() * sizeof(glm::mat4));
   weightsPart_ = part(state_.weights.size() * sizeof(float));
   if (scene_.hasAcceleration())
     for (Part& p : topPart_) p = part(packed_.size() * sizeof(VkAccelerationStructureInstanceKHR));
+}
+
+void SceneMotion::makeLights(shader::Compiler& compiler) {
+  if (lightsPart_.size == 0) return;
+  for (gpu::Buffer& lights : lights_)
+    lights = gpu::Buffer(device_, lightsPart_.size, kWritten | kRead, gpu::Residency::Device, "moving lights");
+  if (!prepared_.lightPowerChanges()) return;
+  const auto count = static_cast<uint32_t>(prepared_.lights.size());
+  alias_ = gpu::Buffer(device_, count * sizeof(scene::AliasCell), kWritten | kRead, gpu::Residency::Device,
+                       "moving lights' alias table");
+  if (powersPart_.size == 0) return;
+  powers_ = gpu::Buffer(device_, powersPart_.size, kWritten, gpu::Residency::Device, "moving lights' powers");
+  constexpr uint32_t kStride = sizeof(scene::GpuLight) / sizeof(float), kPdf = offsetof(scene::GpuLight, pdf) / 4;
+  table_.emplace(
+      device_, compiler, count, powers_.handle(), alias_.handle(),
+      std::vector<LightProbabilities>{{lights_[0].handle(), kStride, kPdf}, {lights_[1].handle(), kStride, kPdf}});
 }
 
 void SceneMotion::makeKernel(shader::Compiler& compiler) {
@@ -144,7 +168,7 @@ scene::MovingBindings SceneMotion::bindings(uint32_t half) const {
   b.previousInstances = instances_[past].handle();
   b.lights = lit ? lights_[half].handle() : scene_.lights();
   b.previousLights = lit ? lights_[past].handle() : scene_.lights();
-  b.alias = lit ? alias_.handle() : scene_.alias();
+  b.alias = alias_ ? alias_.handle() : scene_.alias();
   if (acceleration_) {
     b.top = acceleration_->top(half);
     b.previousTop = acceleration_->top(past);
@@ -170,6 +194,16 @@ void SceneMotion::upload(VkCommandBuffer commands, uint32_t slot, uint32_t half,
     draws_[i].flipsWinding = state_.flipsWinding[i] != 0;
   }
   stage(slot, instancesPart_, packed_);
+  if (powersPart_.size > 0) {
+    // Any common factor will do, and this one keeps them within what floats hold.
+    const double largest = std::ranges::max(state_.power);
+    relativePowers_.resize(state_.power.size());
+    for (size_t i = 0; i < state_.power.size(); ++i)
+      relativePowers_[i] = largest > 0.0 ? static_cast<float>(state_.power[i] / largest) : 0.0f;
+    stage(slot, powersPart_, relativePowers_);
+  }
+  if (aliasPart_.size > 0 && state_.aliasTable.empty())
+    state_.aliasTable = scene::buildLightTable(state_.power, state_.lights);
   stage(slot, lightsPart_, state_.lights);
   stage(slot, aliasPart_, state_.aliasTable);
   stage(slot, jointsPart_, state_.joints);
@@ -188,8 +222,21 @@ void SceneMotion::upload(VkCommandBuffer commands, uint32_t slot, uint32_t half,
     if (acceleration_) copy(commands, slot, topPart_[h], acceleration_->instances(h));
   }
   copy(commands, slot, aliasPart_, alias_.handle());
+  copy(commands, slot, powersPart_, powers_.handle());
   copy(commands, slot, jointsPart_, joints_.handle());
   copy(commands, slot, weightsPart_, weights_.handle());
+}
+
+/// Beside the deformation: neither waits for the other.
+void SceneMotion::tabulate(VkCommandBuffer commands, uint32_t half, bool fresh) const {
+  if (!table_) return;
+  table_->record(commands, half);
+  if (!fresh) return;
+  // The past has the same probabilities.
+  gpu::memoryBarrier(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                     VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                     VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT);
+  table_->record(commands, 1 - half);
 }
 
 void SceneMotion::deform(VkCommandBuffer commands, uint32_t half) const {
@@ -242,7 +289,8 @@ void SceneMotion::record(VkCommandBuffer commands, uint32_t slot, uint32_t half,
       acceleration_ ? VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR : VkPipelineStageFlags2{0};
   const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   gpu::memoryBarrier(commands, VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute | build,
-                     VK_ACCESS_2_SHADER_READ_BIT);
+                     VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT);
+  tabulate(commands, half, fresh);
   for (uint32_t h = 0; h < 2; ++h) {
     if (prepared_.traits.deforms && (h == half || fresh)) deform(commands, h);
     // Both halves write the normals, alike.
@@ -271,7 +319,9 @@ float SceneMotion::largestSide() const {
 uint64_t SceneMotion::bytes() const {
   uint64_t sum = acceleration_ ? acceleration_->bytes() : 0;
   for (uint32_t h = 0; h < 2; ++h) sum += instances_[h].size() + lights_[h].size() + positions_[h].size();
-  for (const gpu::Buffer* b : {&alias_, &vertices_, &influences_, &deltas_, &flat_, &joints_, &weights_, &staging_})
+  if (table_) sum += table_->bytes();
+  for (const gpu::Buffer* b :
+       {&alias_, &powers_, &vertices_, &influences_, &deltas_, &flat_, &joints_, &weights_, &staging_})
     sum += b->size();
   return sum;
 }

@@ -2,6 +2,7 @@
 // frame and of the last one. Written anew within each frame's submission.
 #pragma once
 
+#include <weir/execute/light_table.h>
 #include <weir/execute/pipelines.h>
 #include <weir/scene/scene_state.h>
 #include <weir/scene/upload.h>
@@ -21,8 +22,10 @@ class SceneMotion {
  public:
   static constexpr uint32_t kSlots = 2;  ///< frames in flight
 
-  /// The scene must outlive this.
-  SceneMotion(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene);
+  /// The scene must outlive this. `tableOnDevice`: whether the device builds the alias table of lights whose powers
+  /// change, where it can; else the CPU does.
+  SceneMotion(const gpu::Device& device, shader::Compiler& compiler, const scene::SceneGpu& scene,
+              bool tableOnDevice = true);
   ~SceneMotion();
   SceneMotion(const SceneMotion&) = delete;
   SceneMotion& operator=(const SceneMotion&) = delete;
@@ -45,12 +48,14 @@ class SceneMotion {
     uint64_t offset = 0, size = 0;
   };
   void layOut();
+  void makeLights(shader::Compiler& compiler);
   void makeKernel(shader::Compiler& compiler);
   template <typename T>
   void stage(uint32_t slot, const Part& part, const std::vector<T>& values);
   void copy(VkCommandBuffer commands, uint32_t slot, const Part& part, VkBuffer to) const;
   void upload(VkCommandBuffer commands, uint32_t slot, uint32_t half, bool fresh);
   void deform(VkCommandBuffer commands, uint32_t half) const;
+  void tabulate(VkCommandBuffer commands, uint32_t half, bool fresh) const;
 
   const gpu::Device& device_;
   const scene::SceneGpu& scene_;
@@ -62,12 +67,15 @@ class SceneMotion {
   std::vector<VkAccelerationStructureInstanceKHR> topInstances_;
 
   std::array<gpu::Buffer, 2> instances_, lights_, positions_;
-  gpu::Buffer alias_, vertices_, influences_, deltas_, flat_, joints_, weights_;
+  bool tableOnDevice_;
+  gpu::Buffer alias_, powers_, vertices_, influences_, deltas_, flat_, joints_, weights_;
   gpu::Buffer staging_;
   uint64_t slotBytes_ = 0;
-  Part instancesPart_, lightsPart_, aliasPart_, jointsPart_, weightsPart_;
+  Part instancesPart_, lightsPart_, aliasPart_, powersPart_, jointsPart_, weightsPart_;
   std::array<Part, 2> topPart_;
   std::optional<trace::MovingAcceleration> acceleration_;
+  std::optional<LightTable> table_;  ///< where powers change and the device can; else the CPU builds it
+  std::vector<float> relativePowers_;
 
   Pipeline kernel_;
   VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;

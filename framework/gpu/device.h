@@ -39,6 +39,7 @@ struct HostDevice {
 struct Capabilities {
   bool accelerationStructure = false, rayPipeline = false, rayQuery = false;
   bool graphics = true;  ///< the queue can rasterise
+  bool doubles = false;  ///< double precision in shaders
   uint32_t subgroupSize = 0;
   float timestampPeriod = 0.0f;  ///< nanoseconds a tick; 0: no timestamps
   uint32_t shaderGroupHandleSize = 0, shaderGroupHandleAlignment = 0, shaderGroupBaseAlignment = 0;

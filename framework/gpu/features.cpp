@@ -28,6 +28,7 @@ const std::vector<FeatureRule>& featureRules() {
       WEIR_FEATURE(true, v12, bufferDeviceAddress),
       WEIR_FEATURE(true, v12, scalarBlockLayout),
       WEIR_FEATURE(true, core.features, shaderInt64),
+      WEIR_FEATURE(false, core.features, shaderFloat64),
       WEIR_FEATURE(false, core.features, shaderInt16),
       WEIR_FEATURE(false, v12, shaderInt8),
       WEIR_FEATURE(false, v12, shaderFloat16),

@@ -73,6 +73,7 @@ DeviceInfo inspect(const HostDevice& host) {
   takeEnabled(host.features, chain);
   for (const FeatureRule& rule : featureRules())
     if (rule.required && !rule.field(chain)) info.missing.emplace_back(rule.name);
+  info.capabilities.doubles = chain.core.features.shaderFloat64;
   readRays(host, chain, info);
   return info;
 }

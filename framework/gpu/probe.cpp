@@ -110,6 +110,7 @@ void readFeatures(Probe& probe, const DeviceOptions& options) {
   capabilities.accelerationStructure = acceleration && chain.acceleration.accelerationStructure;
   capabilities.rayPipeline = capabilities.accelerationStructure && pipeline && chain.rayPipelines.rayTracingPipeline;
   capabilities.rayQuery = capabilities.accelerationStructure && query && chain.rayQueries.rayQuery;
+  capabilities.doubles = chain.core.features.shaderFloat64;
   readLimits(probe, capabilities.accelerationStructure, capabilities.rayPipeline,
              chain.v12.descriptorBindingSampledImageUpdateAfterBind);
 }

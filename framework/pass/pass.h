@@ -46,6 +46,12 @@ struct TextureData {
   std::vector<float> rgba;
 };
 
+/// What there is of light in the scene. How it shines may change from frame to frame, this doesn't.
+struct LightSummary {
+  uint32_t count = 0;       ///< entries of the shader's sceneLights
+  bool pointsOnly = false;  ///< all of them are point lights without a range
+};
+
 /// Answers about the compiled pass. Asking for what the description doesn't declare throws InputError naming pass and
 /// name.
 class PassContext {
@@ -59,6 +65,7 @@ class PassContext {
   virtual uint32_t width() const = 0;  ///< of the frame
   virtual uint32_t height() const = 0;
   virtual std::string sceneFolder() const = 0;
+  virtual LightSummary lights() const = 0;  ///< of passes that need scene.lights
 };
 
 /// Called when the graph is compiled, and again when a parameter changes that specialises.

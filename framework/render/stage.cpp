@@ -138,7 +138,7 @@ execute::FrameInput Player::frameAt(double seconds, uint32_t number, uint32_t se
   const scene::Pose pose = scene::evaluate(stage_.scene, clip, scene::wrapped(clip, seconds));
   input.camera = scene::posed(stage_.camera, pose);
   if (states_) {
-    state_ = states_->at(pose);
+    state_ = states_->at(pose, false);
     input.state = &state_;
   }
   return input;

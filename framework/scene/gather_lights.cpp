@@ -145,6 +145,8 @@ void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered
 
 void gatherPunctual(const Scene& scene, const PreparedScene& prepared, const std::vector<char>& moving, Gathered& out) {
   const double radius = prepared.bounds.radius();
+  out.lights.reserve(out.lights.size() + scene.lights.size() + 1);  // and an environment
+  out.power.reserve(out.lights.capacity());
   for (const PunctualLight& from : scene.lights) {
     GpuLight light;
     light.radiance = from.intensity;
@@ -235,7 +237,12 @@ void gatherLights(const Scene& scene, PreparedScene& prepared, const Clip* clip)
   }
   prepared.traits.triangleLights = !gathered.lights.empty();
   prepared.triangleLights = static_cast<uint32_t>(gathered.lights.size());
+  const auto shaped = [](const GpuLight& light) {
+    return light.kind != static_cast<uint32_t>(GpuLightKind::Point) || light.b.z > 0.0f;
+  };
   gatherPunctual(scene, prepared, clip != nullptr ? movingNodes(scene, *clip) : std::vector<char>(), gathered);
+  prepared.traits.shapedLights =
+      std::any_of(gathered.lights.begin() + prepared.triangleLights, gathered.lights.end(), shaped);
   prepared.environment = tabulate(scene.environment);
   prepared.traits.environment = scene.environment.shines();
   gatherEnvironment(prepared, gathered);

@@ -39,7 +39,6 @@ void addGeneratedLights(Scene& scene, uint32_t count, uint32_t seed) {
   scene.lights.reserve(scene.lights.size() + count);
   for (uint32_t i = 0; i < count; ++i) {
     PunctualLight light;
-    light.name = "generated " + std::to_string(i);
     light.kind = LightKind::Point;
     light.intensity = glm::vec3(glm::dvec3(colours[i]) * scale);
     light.position =

@@ -19,7 +19,7 @@ inline constexpr uint32_t kLightTurned = 1u << 10;
 inline constexpr uint32_t kLightAlpha = 1u << 11;
 inline constexpr uint32_t kNoLight = 0xffffffffu;
 
-/// One light, 64 bytes, as shaders read it.
+/// One light, 64 bytes, as shaders read it: all that a point light has lies in the first 32, which are read at once.
 /// Triangle: position = vertex 0, a = edge to vertex 1, b = edge to vertex 2 (world), radiance in nit.
 /// Point and spot: position; a = direction of travel; b.x = 1/(cos inner - cos outer), b.y = cos outer,
 /// b.z = range (0: none); radiance = candela. Directional: a = direction of travel; radiance = lux.
@@ -27,12 +27,12 @@ inline constexpr uint32_t kNoLight = 0xffffffffu;
 struct GpuLight {
   glm::vec3 position{0.0f};
   uint32_t kind = 0;  ///< GpuLightKind, or-ed with kLight... flags
+  glm::vec3 radiance{0.0f};
+  float pdf = 0.0f;  ///< probability with which the alias table picks this light
   glm::vec3 a{0.0f};
   uint32_t triangle = 0xffffffffu;  ///< index into PreparedScene::triangles
   glm::vec3 b{0.0f};
   float area = 0.0f;  ///< m², triangles only
-  glm::vec3 radiance{0.0f};
-  float pdf = 0.0f;  ///< probability with which the alias table picks this light
 };
 static_assert(sizeof(GpuLight) == 64);
 

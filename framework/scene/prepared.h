@@ -7,6 +7,7 @@
 #include <weir/scene/scene.h>
 #include <weir/scene/traits.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -158,6 +159,10 @@ struct PreparedScene {
   std::vector<MovingLight> movingLights;
   std::vector<double> lightPower;  ///< weights of the alias table, beside lights; only where lights move
 
+  /// Whether the clip changes powers of lights, and the alias table with them: areas of triangles.
+  bool lightPowerChanges() const {
+    return std::any_of(movingLights.begin(), movingLights.end(), [](const MovingLight& m) { return m.instance >= 0; });
+  }
   /// Whether an instance's transform or vertices change while the clip plays.
   bool moves(const PreparedInstance& instance) const {
     return instance.node >= 0 || ranges[instance.range].deformation >= 0;

@@ -59,7 +59,7 @@ StateMaker::StateMaker(const Scene& scene, const PreparedScene& prepared) : scen
   }
 }
 
-SceneState StateMaker::at(const Pose& pose) const {
+SceneState StateMaker::at(const Pose& pose, bool table) const {
   SceneState state;
   for (int skin : prepared_.posedSkins) {
     for (const glm::mat4& joint : jointMatrices(scene_.skins[skin], pose)) {
@@ -70,7 +70,7 @@ SceneState StateMaker::at(const Pose& pose) const {
   for (int node : prepared_.posedNodes)
     state.weights.insert(state.weights.end(), pose.weights[node].begin(), pose.weights[node].end());
   setInstances(pose, state);
-  setLights(pose, state);
+  setLights(pose, table, state);
   setBounds(state);
   return state;
 }
@@ -107,11 +107,15 @@ glm::vec3 StateMaker::vertex(uint32_t v, const TriangleRange& range, const Scene
   return glm::vec3(sum);
 }
 
-void StateMaker::setLights(const Pose& pose, SceneState& state) const {
+void StateMaker::setLights(const Pose& pose, bool table, SceneState& state) const {
   state.lights = prepared_.lights;
-  state.aliasTable = prepared_.aliasTable;
-  std::vector<double> power = prepared_.lightPower;
-  bool reweigh = prepared_.aliasTable.empty();
+  const bool changes = prepared_.lightPowerChanges();
+  // gatherLights() asks before there is a table at rest.
+  const bool reweigh = changes || prepared_.aliasTable.empty();
+  if (!reweigh)
+    state.aliasTable = prepared_.aliasTable;
+  else
+    state.power = prepared_.lightPower;
   for (const MovingLight& moving : prepared_.movingLights) {
     GpuLight& light = state.lights[moving.light];
     if (moving.instance < 0) {
@@ -126,10 +130,9 @@ void StateMaker::setLights(const Pose& pose, SceneState& state) const {
     light.kind = (light.kind & ~kLightTurned) | (turned ? kLightTurned : 0u);
     const auto corner = [&](int k) { return transformed(toWorld, vertex(v[k], range, state)); };
     setTriangle(light, corner(0), corner(turned ? 2 : 1), corner(turned ? 1 : 2));
-    power[moving.light] = moving.radiosity * light.area;
-    reweigh = true;
+    state.power[moving.light] = moving.radiosity * light.area;
   }
-  if (reweigh && !power.empty()) state.aliasTable = buildLightTable(power, state.lights);
+  if (reweigh && table && !state.power.empty()) state.aliasTable = buildLightTable(state.power, state.lights);
 }
 
 Bounds StateMaker::boundsOf(size_t number, const SceneState& state) const {

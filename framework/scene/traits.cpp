@@ -9,6 +9,7 @@ std::string traitDefines(const SceneTraits& traits) {
   };
   define(traits.texturedLights, "TEXTURED_LIGHTS");
   define(traits.triangleLights, "TRIANGLE_LIGHTS");
+  define(traits.shapedLights, "SHAPED_LIGHTS");
   define(traits.alphaLights, "ALPHA_LIGHTS");
   define(traits.blend, "BLEND");
   define(traits.vertexColors, "VERTEX_COLORS");

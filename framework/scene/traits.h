@@ -10,6 +10,7 @@ namespace weir::scene {
 struct SceneTraits {
   bool texturedLights = false;  ///< SCENE_TEXTURED_LIGHTS: some emissive triangle's radiance varies with its texture
   bool triangleLights = false;  ///< SCENE_TRIANGLE_LIGHTS: some light is an emissive triangle
+  bool shapedLights = false;    ///< SCENE_SHAPED_LIGHTS: some punctual light isn't a point that shines without a range
   bool alphaLights = false;     ///< SCENE_ALPHA_LIGHTS: some emissive triangle's coverage varies over it
   bool blend = false;           ///< SCENE_BLEND: some material blends, so that rays may come through in part
   bool vertexColors = false;    ///< SCENE_VERTEX_COLORS: some triangle's base colour is scaled by its vertices'

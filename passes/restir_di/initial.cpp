@@ -2,6 +2,10 @@
 #include "restir_di/ray_order.h"
 #include "restir_di/restir_di.h"
 
+#include <weir/core/error.h>
+
+#include <string>
+
 namespace weir::passes {
 
 void Initial::describe(PassDescription& d) {
@@ -24,6 +28,11 @@ void Initial::describe(PassDescription& d) {
       .doc(
           "Share of the candidates picked uniformly among all lights, the rest by power: bounds the error of dim "
           "lights close by");
+  d.param("tiles", "auto")
+      .oneOf({"auto", "on", "off"})
+      .doc(
+          "Whether the pixels of a tile of 16 x 16 pick one light each and share all picks, whose cost hardly grows "
+          "with the number of lights, or each pick all their candidates themselves; auto: where bsdfRays is 0, on");
   d.param("triangles", "solidAngle")
       .oneOf({"area", "solidAngle"})
       .specialises()
@@ -38,23 +47,20 @@ void Initial::describe(PassDescription& d) {
   d.param("visibility", true)
       .specialises()
       .doc("Shoot a shadow ray to each chosen sample: hidden ones are not passed on");
-  d.param("sharing", "tile")
-      .oneOf({"none", "tile"})
-      .doc(
-          "Who looks at a pick from the light table: the pixel alone, or all of a tile of 16 x 16 pixels, each of which "
-          "picks one. Then the size of the table hardly matters. bsdfRays share nothing");
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);
   d.needs(Need::FrameCamera).needs(Need::FrameIndex);
 }
 
 void Initial::prepare(PrepareContext& c) {
   separate_ = false;
-  const bool rays = c.integer("bsdfRays") > 0;
-  if (rays) {
+  const std::string tiles = c.text("tiles");
+  if (c.integer("bsdfRays") > 0) {
+    if (tiles == "on")
+      throw InputError("tiles 'on' and bsdfRays above 0 can't go together: what traces rays shares no memory; expected tiles 'auto' or 'off', or bsdfRays 0");
     kernel_ = c.rayKernel("initial.glsl", {.defines = {{"BSDF_RAYS", "1"}}});
     return;
   }
-  if (c.text("sharing") == "tile") {
+  if (tiles != "off") {
     separate_ = c.boolean("visibility");
     if (!separate_) {
       kernel_ = c.kernel("initial_tiles.glsl", {.group = {.side = kTileSide, .whole = true}});

@@ -87,7 +87,9 @@ Candidate drawOnLight(Light light, uvec4 bits, Surface surface, TriangleWays way
 #endif
   // The upper 24 bits: 1 must not be reached.
   const vec2 u = vec2(bits.xy >> 8u) * (1.0 / 16777216.0);
+#ifdef SCENE_TRIANGLE_LIGHTS
   if (kind == kTriangle) return drawOnTriangle(light, u, surface, ways);
+#endif
   c.place = packPlace(u);
   c.light = evaluatePunctual(light, surface.position);
   c.spread = c.light.area;

@@ -124,6 +124,7 @@ LightSample evaluatePoint(vec3 at, vec3 intensity, vec3 position) {
 LightSample evaluatePunctual(Light light, vec3 position) {
   LightSample s;
   s.area = 1.0;
+#ifdef SCENE_SHAPED_LIGHTS
   const uint kind = light.kind & kKindMask;
   if (kind == kDirectional) {
     s.direction = -light.a;
@@ -131,12 +132,14 @@ LightSample evaluatePunctual(Light light, vec3 position) {
     s.radiance = light.radiance;
     return s;
   }
+#endif
   const vec3 d = light.position - position;
   const float d2 = dot(d, d);
   s.target = light.position;
   s.direction = d * inversesqrt(d2);
-  // KHR_lights_punctual's recommended window: 1 at the light, 0 at its range.
   float attenuation = 1.0 / d2;
+#ifdef SCENE_SHAPED_LIGHTS
+  // KHR_lights_punctual's recommended window: 1 at the light, 0 at its range.
   if (light.b.z > 0.0) {
     const float q = d2 / (light.b.z * light.b.z);
     attenuation *= clamp(1.0 - MUTANT(42, q, q * q), 0.0, 1.0);
@@ -145,6 +148,7 @@ LightSample evaluatePunctual(Light light, vec3 position) {
     const float t = clamp((dot(-s.direction, light.a) - light.b.y) * light.b.x, 0.0, 1.0);
     attenuation *= MUTANT(41, t, t * t);
   }
+#endif
   s.radiance = d2 > 0.0 ? light.radiance * attenuation : vec3(0.0);
   return s;
 }
@@ -162,7 +166,9 @@ LightSample evaluateEnvironment(uint place, vec3 position) {
 #endif
 
 LightSample evaluateLight(Light light, uint place, vec3 position) {
+#ifdef SCENE_TRIANGLE_LIGHTS
   if ((light.kind & kKindMask) == kTriangle) return evaluateTriangle(light, placeOnTriangle(place), position);
+#endif
 #ifdef SCENE_ENVIRONMENT
   if ((light.kind & kKindMask) == kEnvironment) return evaluateEnvironment(place, position);
 #endif

@@ -20,12 +20,16 @@ void pickForTile(uvec2 pixel, uint thread, uint turn) {
   random.dimension = turn;
   uvec4 bits = nextBits4(random);
   // One pick in each part of the table: together they have its distribution, with less chance in how often a light comes.
-  bits.x = (thread << 24u) | (bits.x >> 8u);
+  bits.x = (thread << MUTANT(34, 23u, 24u)) | (bits.x >> 8u);
   const uint chosen = pickMixed(bits.xy, param_uniformShare);
   const Light light = sceneLights[chosen];
+#ifdef SCENE_SHAPED_LIGHTS
   const bool plain = (light.kind & kKindMask) == kPoint && !(light.b.z > 0.0);
-  pickPlace[thread] = uvec4(floatBitsToUint(light.position), chosen | (plain ? kPlain : 0u));
-  pickPower[thread] = uvec4(floatBitsToUint(light.radiance), floatBitsToUint(mixedPdf(light, param_uniformShare)));
+#else
+  const bool plain = (light.kind & kKindMask) == kPoint;
+#endif
+  pickPlace[thread] = uvec4(floatBitsToUint(light.position), MUTANT(35, (chosen + 1u) % lightCount(), chosen) | (plain ? kPlain : 0u));
+  pickPower[thread] = uvec4(floatBitsToUint(light.radiance), floatBitsToUint(MUTANT(37, light.pdf, mixedPdf(light, param_uniformShare))));
 }
 
 // `count` of the picks: one in each of as many parts of the tile's, which begin at a random place, so that all are equally likely.
@@ -37,7 +41,7 @@ void lookThrough(inout Selection selections[out_reservoirs_count], Surface surfa
     words = words.yzwx;
     if ((i & 3u) == 0u) words = nextBits4(random);
     const uint low = (i * step) >> 16u, width = (((i + 1u) * step) >> 16u) - low;
-    const uint at = (begin + low + (((words.x & 255u) * width) >> 8u)) & (kPicks - 1u);
+    const uint at = (begin + low + ((MUTANT(36, 0u, words.x & 255u) * width) >> 8u)) & (kPicks - 1u);
     const uvec4 where = pickPlace[at], power = pickPower[at];
     const uint chosen = where.w & ~kPlain;
     const float pdf = uintBitsToFloat(power.w);
@@ -87,7 +91,7 @@ void run(uvec2 pixel) {
     if (turn > 0u) barrier();
     pickForTile(pixel, thread, turn);
     barrier();
-    const uint begin = pcg4d(uvec4(tile, frameIndex, frameSeed ^ launchStream, turn)).x >> 24u;
+    const uint begin = MUTANT(36, 0u, pcg4d(uvec4(tile, frameIndex, frameSeed ^ launchStream, turn)).x >> 24u);
     if (lit) lookThrough(selections, surface, min(all - done, kPicks), begin, random);
   }
 #ifdef SCENE_ENVIRONMENT

@@ -21,10 +21,12 @@ Candidate drawCandidate(Light light, uvec2 bits, Surface surface, inout Random r
     return c;
   }
 #endif
+#ifdef SCENE_TRIANGLE_LIGHTS
   const vec2 u = vec2(uniformFloat(bits.x), uniformFloat(bits.y));
   if ((light.kind & kKindMask) == kTriangle) return drawOnTriangle(light, u, surface, triangleWays());
-  c.place = packPlace(u);
-  c.light = evaluateLight(light, c.place, surface.position);
+#endif
+  c.place = 0u;
+  c.light = evaluatePunctual(light, surface.position);
   c.spread = c.light.area;
   return c;
 }

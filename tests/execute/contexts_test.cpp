@@ -54,6 +54,7 @@ TEST(Contexts, AskingForWhatIsNotDeclaredNamesPassAndName) {
   expectWords(thrown([](PrepareContext& c) { (void)c.connected("perhaps"); }), {"it", "own.Scripted", "'perhaps'"});
   expectWords(thrown([](PrepareContext& c) { (void)c.rayKernel("any.glsl"); }),
               {"it", "own.Scripted", "scene.acceleration"});
+  expectWords(thrown([](PrepareContext& c) { (void)c.lights(); }), {"it", "own.Scripted", "scene.lights"});
   expectWords(thrown([](PrepareContext& c) { (void)c.rasterKernel("any.glsl", "nowhere"); }),
               {"it", "own.Scripted", "rasterises"});
   declaresDrawing = true;

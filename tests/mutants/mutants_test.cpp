@@ -49,7 +49,7 @@ std::string nameOf(const testing::TestParamInfo<std::string>& info) {
   std::erase(name, '-');
   return name;
 }
-INSTANTIATE_TEST_SUITE_P(Mutants, Quick, testing::Values("room-pairwise", "room-initial", "moving"), nameOf);
+INSTANTIATE_TEST_SUITE_P(Mutants, Quick, testing::Values("room-pairwise", "room-initial", "moving", "tiles"), nameOf);
 
 }  // namespace
 }  // namespace weir::test

@@ -268,6 +268,8 @@ std::vector<Situation> makeSituations() {
   s.back().stage = paneStage;
   s.push_back(initialSituation("points", "spot, window, unlike powers", pointsStage,
                                {"initial.candidates=16", "initial.uniformShare=0.3"}));
+  s.push_back(initialSituation("tiles", "the same lights from tiles", pointsStage,
+                               {"initial.candidates=6", "initial.tiles=on", "initial.uniformShare=0.3"}));
   s.push_back(pathSituation("paths", "four bounces through the room", roomStage));
   s.push_back(pathSituation("sky-paths", "four bounces under a sky with a lamp", lampUnderSkyStage));
   return s;

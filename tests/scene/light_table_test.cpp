@@ -65,6 +65,28 @@ TEST(LightOfTriangle, ScenesWithoutEmissionHaveNone) {
   EXPECT_EQ(traitDefines(p.traits).find("TRIANGLE_LIGHTS"), std::string::npos);
 }
 
+// A scene of points compiles no other lights: a trait that fails to say so would leave theirs dark.
+TEST(LightTraits, SayWhatIsNoPlainPoint) {
+  const auto shaped = [](const PunctualLight& light) {
+    Scene scene = row({lamp()});
+    scene.lights = {{}, light};
+    scene.lights[0].intensity = glm::vec3(1.0f);
+    return prepareScene(scene).traits.shapedLights;
+  };
+  PunctualLight light;
+  light.intensity = glm::vec3(1.0f);
+  EXPECT_FALSE(shaped(light)) << "nor is a lamp beside them";
+  light.range = 2.0f;
+  EXPECT_TRUE(shaped(light));
+  light.range = 0.0f;
+  light.kind = LightKind::Spot;
+  EXPECT_TRUE(shaped(light));
+  light.kind = LightKind::Directional;
+  EXPECT_TRUE(shaped(light));
+  light.intensity = glm::vec3(0.0f);
+  EXPECT_FALSE(shaped(light)) << "a dark one is none";
+}
+
 // While a clip plays, a light keeps its triangle, so that one table serves every frame.
 TEST(LightOfTriangle, HoldsForEveryMomentOfAClip) {
   const Scene scene = importGltf(WEIR_SOURCE_DIR "/scenes/cornell-moving.glb");
