@@ -48,7 +48,7 @@ LightTable::LightTable(const gpu::Device& device, shader::Compiler& compiler, ui
     request.source = "#version 460\n#define STAGE " + std::to_string(stage) + "\n#include \"light_table.glsl\"\n";
     request.stage = shader::Stage::Compute;
     request.includeFolders.push_back(commonShaderFolder().string());
-    kernels_[stage] = Pipeline::compute(device, pipelineLayout_, compiler.compile(request).spirv, {},
+    kernels_[stage] = Pipeline::compute(device, pipelineLayout_, compiler.compile(request).spirv, {}, 8,
                                         "light table " + std::to_string(stage));
   }
   for (size_t i = 0; i < sets_.size(); ++i) {

@@ -53,8 +53,15 @@ def case_schema(folder):
     schema = load(SOURCE + "/docs/bench.schema.json")
     jsonschema.Draft7Validator.check_schema(schema)
     out = os.path.join(folder, "a.json")
-    run(*words(out, *SWEEP, *ERRORS, "--crop", "2,3,8,9"))
+    run(*words(out, *SWEEP, *ERRORS, "--crop", "2,3,8,9", "--floor"))
     whole = load(out)
+    for c in whole["configurations"]:
+        floor = c["floor"]
+        assert [p["name"] for p in floor["parts"]] == ["camera rays", "shadow rays", "buffers"], floor
+        assert all(p["gpu_ms"] > 0 for p in floor["parts"]), floor
+        assert abs(sum(p["gpu_ms"] for p in floor["parts"]) - floor["gpu_ms"]) < 1e-9 * floor["gpu_ms"], floor
+        assert abs(floor["multiple"] * floor["gpu_ms"] - c["frame"]["gpu_ms"]["median"]) < 1e-6 * c["frame"]["gpu_ms"]["median"], floor
+        assert "--floor" in c["command"], c["command"]
     jsonschema.validate(whole, schema)
     assert len(whole["configurations"]) == 6
     for break_it in (lambda c: c.pop("frame"), lambda c: c.update(id="x"), lambda c: c["error"].update(bias=1),

@@ -76,6 +76,40 @@ TEST_F(Disable, WhatNobodyReadsNeedsNoPassThrough) {
   EXPECT_EQ(r.order().size(), 5u);
 }
 
+// An extra that is there only while its pass is: who can do without it is left without, who can't is an error.
+TEST_F(Disable, ExtrasAreAbsent) {
+  fakes.add("x.Source").output("color", storageImage(Format::RGBA32F));
+  PassDescription& filter = fakes.add("x.Filter");
+  filter.input("color", storageImage(Format::RGBA32F));
+  filter.output("color", storageImage(Format::RGBA32F)).passesThrough("color");
+  filter.output("extra", storageImage(Format::RGBA32F)).absentWhenDisabled();
+  PassDescription& reader = fakes.add("x.Reader");
+  reader.input("color", storageImage(Format::RGBA32F));
+  reader.input("extra", storageImage(Format::RGBA32F)).optional();
+  reader.output("color", storageImage(Format::RGBA32F));
+  const auto graph = [](const char* input, const char* source) {
+    return std::string(R"({"version": 1, "passes": {"s": {"type": "x.Source"},
+"f": {"type": "x.Filter", "inputs": {"color": "s.color"}},
+"r": {"type": "x.Reader", "inputs": {"color": "f.color", ")") + input + "\": \"" + source + R"("}}},
+"outputs": {"o": "r.color"}})";
+  };
+  const Result enabled = run(graph("extra", "f.extra"), fakes);
+  EXPECT_EQ(enabled.text(), "");
+  EXPECT_EQ(enabled.source("r", "extra"), "f.extra");
+  const Result r = disable({"f"}, graph("extra", "f.extra"));
+  EXPECT_EQ(r.text(), "");
+  EXPECT_EQ(r.source("r", "color"), "s.color");
+  for (const Binding& b : r.graph.passes.back().inputs)
+    EXPECT_EQ(b.resource == kNone, b.port == "extra") << b.port;
+  // Last frame's too.
+  EXPECT_EQ(disable({"f"}, graph("extra", "f.extra@previous")).text(), "");
+  std::string needed = graph("extra", "f.extra");
+  needed = replaced(needed, "\"color\": \"f.color\", \"extra\"", "\"color\"");
+  const Result failed = disable({"f"}, needed);
+  ASSERT_EQ(failed.diagnostics.size(), 1u) << failed.text();
+  EXPECT_NE(failed.diagnostics[0].message.find("its output 'extra' is read and passes nothing through"), std::string::npos);
+}
+
 TEST_F(Disable, ADisabledReaderDoesNotCount) {
   // temporal reads gbuffer's motion, which nothing stands for; with temporal disabled nobody asks.
   fakes.add("x.Denoise").input("color", storageImage(Format::RGBA32F));

@@ -59,6 +59,7 @@ View randomSurfaces(const oracle::World& world, std::vector<Reservoir>& reservoi
 TEST(RestirShade, FollowsTheBsdfAndTheLights) {
   oracle::Random random(8);
   PassTest t("restir_di.Shade");
+  t.leaveOpen("light");
   const scene::Scene scene = smallScene({});
   const oracle::World world(scene::prepareScene(scene));
   std::vector<Reservoir> reservoirs;
@@ -111,6 +112,7 @@ TEST(RestirShade, ShadowsAndEmission) {
   }
   for (const bool visibility : {true, false}) {
     PassTest t("restir_di.Shade");
+    t.leaveOpen("light");
     show(t, view, scene);
     t.param("visibility", visibility ? "true" : "false")
         .input("emission", emission)
@@ -149,6 +151,7 @@ TEST(RestirShade, MeanOverReservoirs) {
           {static_cast<uint32_t>(random() % 8), static_cast<uint32_t>(random()), null ? 0.0f : 0.25f, 1.0f});
     }
     PassTest t("restir_di.Shade");
+    t.leaveOpen("light");
     show(t, view, scene);
     t.param("visibility", "false").count("reservoirs", perPixel).input("reservoirs", reservoirs).run();
     const std::vector<float> out = t.output<float>("color");
@@ -171,6 +174,7 @@ TEST(RestirShade, NonFiniteReservoirsGiveEmissionOnly) {
   const View view = planeView(16, 16, frontCamera());
   for (const char* visibility : {"true", "false"}) {
     PassTest t("restir_di.Shade");
+    t.leaveOpen("light");
     show(t, view, smallScene({}));
     std::vector<Reservoir> reservoirs;
     std::vector<float> emission;
