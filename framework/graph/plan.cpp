@@ -134,7 +134,8 @@ class Planner {
     for (uint32_t i = 0; i < node.type->inputs.size(); ++i) {
       Binding binding;
       binding.port = node.type->inputs[i].name;
-      if (const Link* link = node.linkOf(i)) {
+      // A link to an extra of a disabled pass leads nowhere.
+      if (const Link* link = node.linkOf(i); link && link->resolved.node != kNone) {
         binding.resource = resource(link->resolved);
         binding.previous = isPrevious(link->resolved);
         Resource& r = graph_.resources[binding.resource];

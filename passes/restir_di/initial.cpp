@@ -1,5 +1,4 @@
 #include "common/layouts.h"
-#include "restir_di/ray_order.h"
 #include "restir_di/restir_di.h"
 
 #include <weir/core/error.h>
@@ -52,7 +51,7 @@ void Initial::describe(PassDescription& d) {
 }
 
 void Initial::prepare(PrepareContext& c) {
-  separate_ = false;
+  ordered_ = false;
   const std::string tiles = c.text("tiles");
   if (c.integer("bsdfRays") > 0) {
     if (tiles == "on")
@@ -61,14 +60,15 @@ void Initial::prepare(PrepareContext& c) {
     return;
   }
   if (tiles != "off") {
-    separate_ = c.boolean("visibility");
-    if (!separate_) {
-      kernel_ = c.kernel("initial_tiles.glsl", {.group = {.side = kTileSide, .whole = true}});
-      return;
+    KernelOptions options;
+    options.group = {.side = 16, .whole = true};
+    ordered_ = c.boolean("visibility");
+    if (ordered_) {
+      rays_.scratch(c);
+      options.defines.emplace_back("ORDERS_RAYS", "1");
     }
-    c.scratch("order", rayOrder());
-    kernel_ = c.kernel("initial_tiles.glsl", ordersRays());
-    visibility_ = c.rayKernel("initial_visibility.glsl", {.linear = true});
+    kernel_ = c.kernel("initial_tiles.glsl", options);
+    if (ordered_) rays_.prepare(c, "initial_visibility.glsl");
     return;
   }
   kernel_ = c.boolean("visibility") ? c.rayKernel("initial.glsl") : c.kernel("initial.glsl");
@@ -76,7 +76,7 @@ void Initial::prepare(PrepareContext& c) {
 
 void Initial::record(RecordContext& c) {
   c.launch(kernel_);
-  if (separate_) launchRays(c, visibility_);
+  if (ordered_) rays_.launch(c);
 }
 
 }  // namespace weir::passes

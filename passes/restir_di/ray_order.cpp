@@ -1,24 +1,34 @@
 #include "restir_di/ray_order.h"
 
 namespace weir::passes {
+namespace {
 
-PortType rayOrder() {
-  PortType type = perPixel<RayPlace>();
-  type.scaleDenominator = kTileSide;
-  type.perPixel = kTileSide * kTileSide;
-  return type;
+constexpr uint32_t kRegionSide = 64, kRegionRays = kRegionSide * kRegionSide;
+constexpr uint32_t kSortSide = 32;  ///< of the workgroup that sorts a region: an invocation for each key
+
+uint32_t regions(uint32_t side) {
+  return (side + kRegionSide - 1) / kRegionSide;
 }
 
-KernelOptions ordersRays() {
-  KernelOptions options;
-  options.defines.emplace_back("ORDERS_RAYS", "1");
-  options.group = {.side = kTileSide, .whole = true};
-  return options;
+}  // namespace
+
+void RayOrder::scratch(PrepareContext& c) {
+  c.scratch("keys", perPixel<RayWord>());
+  PortType order = perPixel<RayWord>();
+  order.scaleDenominator = kRegionSide;
+  order.perPixel = kRegionRays;
+  c.scratch("order", order);
 }
 
-void launchRays(RecordContext& c, Kernel kernel) {
-  const auto tiles = [](uint32_t side) { return (side + kTileSide - 1) / kTileSide; };
-  c.launch(kernel, tiles(c.width()) * tiles(c.height()) * kTileSide * kTileSide, 1, 0);
+void RayOrder::prepare(PrepareContext& c, const char* rayKernel) {
+  order_ = c.kernel("order_rays.glsl", {.group = {.side = kSortSide, .whole = true}});
+  rays_ = c.rayKernel(rayKernel, {.linear = true});
+}
+
+void RayOrder::launch(RecordContext& c) const {
+  const uint32_t across = regions(c.width()), down = regions(c.height());
+  c.launch(order_, across * kSortSide, down * kSortSide, 0);
+  c.launch(rays_, across * down * kRegionRays, 1, 0);
 }
 
 }  // namespace weir::passes

@@ -8,29 +8,34 @@
 
 namespace weir::passes {
 
-inline constexpr uint32_t kTileSide = 16;
-
-/// Which pixel of its tile has the ray, counted by rows; ~0: none.
-struct RayPlace {
-  uint32_t pixel;
+/// A ray's key, or whose ray it is.
+struct RayWord {
+  uint32_t bits;
 };
 
-/// Of the rays of every tile of 16 x 16 pixels, one a pixel.
-PortType rayOrder();
-/// A compute kernel that puts its pixels' rays into scratch_order.
-KernelOptions ordersRays();
-/// Shoots them: a linear rayKernel.
-void launchRays(RecordContext& c, Kernel kernel);
+/// What a pass with such rays holds: scratch_keys, which a kernel of its own fills, and scratch_order, by which a linear
+/// rayKernel shoots them.
+class RayOrder {
+ public:
+  /// Before the pass's first kernel.
+  void scratch(PrepareContext& c);
+  void prepare(PrepareContext& c, const char* rayKernel);
+  /// Sorts and shoots, after the keys were written.
+  void launch(RecordContext& c) const;
+
+ private:
+  Kernel order_, rays_;
+};
 
 }  // namespace weir::passes
 
 namespace weir {
 
 template <>
-struct LayoutOf<passes::RayPlace> {
-  static constexpr const char* name = "RayPlace";
+struct LayoutOf<passes::RayWord> {
+  static constexpr const char* name = "RayWord";
   static constexpr uint32_t version = 1, emptyWord = 0;
-  static constexpr std::array<Field, 1> fields{{{"uint", "pixel"}}};
+  static constexpr std::array<Field, 1> fields{{{"uint", "bits"}}};
 };
 
 }  // namespace weir

@@ -3,6 +3,8 @@
 
 #include <weir/pass/pass.h>
 
+#include "restir_di/ray_order.h"
+
 #include <array>
 
 namespace weir::passes {
@@ -15,8 +17,9 @@ class Initial final : public Pass {
   void record(RecordContext& c) override;
 
  private:
-  Kernel kernel_, visibility_;
-  bool separate_ = false;  ///< rays are shot by a launch of their own
+  Kernel kernel_;
+  RayOrder rays_;
+  bool ordered_ = false;  ///< rays are shot by a launch of their own
 };
 
 /// Merges each pixel's reservoirs with those its surface had last frame.
@@ -49,7 +52,8 @@ class Shade final : public Pass {
   void record(RecordContext& c) override;
 
  private:
-  Kernel kernel_, rays_;
+  Kernel kernel_;
+  RayOrder rays_;
   bool visibility_ = false;
 };
 

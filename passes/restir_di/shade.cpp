@@ -1,5 +1,4 @@
 #include "common/layouts.h"
-#include "restir_di/ray_order.h"
 #include "restir_di/restir_di.h"
 
 namespace weir::passes {
@@ -24,16 +23,14 @@ void Shade::prepare(PrepareContext& c) {
     kernel_ = c.kernel("shade.glsl");
     return;
   }
-  KernelOptions options = ordersRays();
-  options.defines.emplace_back("FINAL_VISIBILITY", "1");
-  c.scratch("order", rayOrder());
-  kernel_ = c.kernel("shade.glsl", options);
-  rays_ = c.rayKernel("shade_visibility.glsl", {.linear = true});
+  rays_.scratch(c);
+  kernel_ = c.kernel("shade.glsl", {.defines = {{"FINAL_VISIBILITY", "1"}}});
+  rays_.prepare(c, "shade_visibility.glsl");
 }
 
 void Shade::record(RecordContext& c) {
   c.launch(kernel_);
-  if (visibility_) launchRays(c, rays_);
+  if (visibility_) rays_.launch(c);
 }
 
 }  // namespace weir::passes

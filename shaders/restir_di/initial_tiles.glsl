@@ -109,6 +109,6 @@ void run(uvec2 pixel) {
 #endif
   }
 #ifdef ORDERS_RAYS
-  orderRay(ray ? rayKey(towards) : kNoRayKey);
+  if (inside) scratch_keys[index].bits = ray ? rayKey(towards) : kNoRayKey;
 #endif
 }

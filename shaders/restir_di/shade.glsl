@@ -13,33 +13,30 @@
 void run(uvec2 pixel) {
   const uint index = pixel.y * frameWidth + pixel.x;
   bool ray = false;
-  vec3 towards = vec3(0.0);
-  if (all(lessThan(pixel, launchSize))) {
-    vec3 color = imageLoad(in_emission, ivec2(pixel)).rgb, sum = vec3(0.0);
-    const PackedSurface packed = in_surface[index];
-    if (isSurface(packed)) {
-      const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
-      for (uint k = 0u; k < in_reservoirs_count; ++k) {
-        const Reservoir r = sanitized(in_reservoirs[index * in_reservoirs_count + k]);
-        if (isNull(r)) continue;
-        const LightSample light = evaluateLight(lightOf(r), r.place, surface.position);
-        const vec3 f = unshadowed(surface, light);
-        if (f == vec3(0.0)) continue;
-        sum += MUTANT(29, min(f * r.weight, vec3(1.0)), f * r.weight);
-        // A sample that was seen from this very pixel needs no second ray.
-        if (MUTANT(1, false, !isSeen(r))) {
-          ray = true;
-          towards = light.direction;
-        }
+  vec3 towards = vec3(0.0), sum = vec3(0.0);
+  const PackedSurface packed = in_surface[index];
+  if (isSurface(packed)) {
+    const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
+    for (uint k = 0u; k < in_reservoirs_count; ++k) {
+      const Reservoir r = sanitized(in_reservoirs[index * in_reservoirs_count + k]);
+      if (isNull(r)) continue;
+      const LightSample light = evaluateLight(lightOf(r), r.place, surface.position);
+      const vec3 f = unshadowed(surface, light);
+      if (f == vec3(0.0)) continue;
+      sum += MUTANT(29, min(f * r.weight, vec3(1.0)), f * r.weight);
+      // A sample that was seen from this very pixel needs no second ray.
+      if (MUTANT(1, false, !isSeen(r))) {
+        ray = true;
+        towards = light.direction;
       }
     }
     sum /= float(in_reservoirs_count);
 #ifdef has_in_light
     sum = imageLoad(in_light, ivec2(pixel)).rgb;
 #endif
-    imageStore(out_color, ivec2(pixel), vec4(color + sum, 1.0));
   }
+  imageStore(out_color, ivec2(pixel), vec4(imageLoad(in_emission, ivec2(pixel)).rgb + sum, 1.0));
 #ifdef FINAL_VISIBILITY
-  orderRay(ray ? rayKey(towards) : kNoRayKey);
+  scratch_keys[index].bits = ray ? rayKey(towards) : kNoRayKey;
 #endif
 }
