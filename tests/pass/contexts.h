@@ -24,6 +24,7 @@ class Answering : public Base {
   uint32_t width() const override { return 64; }
   uint32_t height() const override { return 64; }
   std::string sceneFolder() const override { return {}; }
+  LightSummary lights() const override { return {}; }
 };
 
 class NotingPrepare final : public Answering<PrepareContext> {
