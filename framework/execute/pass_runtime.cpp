@@ -177,7 +177,8 @@ Kernel PassRuntime::addKernel(KernelKind kind, const std::string& file, const Ke
   } else {
     const auto spirv = compile(kind, shader::Stage::Compute, file, options);
     kernel.pipeline = library.get(pipelineKey(kind, {&spirv}), [&] {
-      return Pipeline::compute(device(), pipelineLayout_, spirv, constants_, options.linear ? 0 : options.group.side, name);
+      return Pipeline::compute(device(), pipelineLayout_, spirv, constants_, options.linear ? 0 : options.group.side,
+                               name);
     });
   }
   stages_ |= kernel.pipeline->stages();

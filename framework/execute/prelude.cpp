@@ -207,7 +207,9 @@ std::string params(const PassDescription& d) {
     names += fmt::format("#define param_{0} (launchBlock.p_{0}{1})\n", p.description->name,
                          type == ParamType::Bool ? " != 0u" : "");
   }
-  block += "} launchBlock;\n#define launchSize launchBlock.size\n#define launchIndex launchBlock.index\n#define launchStream launchBlock.stream\n";
+  block +=
+      "} launchBlock;\n#define launchSize launchBlock.size\n#define launchIndex launchBlock.index\n#define "
+      "launchStream launchBlock.stream\n";
   uint32_t id = 0;
   for (const ParamDescription* p : specialParams(d)) {
     const char* glsl = p->type == ParamType::Float ? "float" : p->type == ParamType::Bool ? "bool" : "int";
@@ -351,7 +353,10 @@ std::string kernelSource(const KernelInterface& k, KernelKind kind, const std::s
     default:
       if (options.linear) {
         s += fmt::format("layout(local_size_x = {}) in;\nvoid main() {{\n  begin();\n", kRowGroup);
-        s += fmt::format("  const uint id = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * {}u + gl_LocalInvocationID.x;\n", kRowGroup);
+        s += fmt::format(
+            "  const uint id = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * {}u + "
+            "gl_LocalInvocationID.x;\n",
+            kRowGroup);
         s += "  if (id < launchSize.x) run(uvec2(id, 0u));\n}\n";
         break;
       }

@@ -53,7 +53,7 @@ std::vector<const ParamDescription*> specialParams(const PassDescription& descri
 /// A parameter's 32 bits as the shader reads them (an Enum's index, a bool's 0 or 1).
 uint32_t paramBits(const ParamDescription& description, const ParamValue& value);
 
-inline constexpr uint32_t kRowGroup = 256;  ///< invocations of a workgroup in linear launches
+inline constexpr uint32_t kRowGroup = 256;    ///< invocations of a workgroup in linear launches
 inline constexpr uint32_t kLaunchBytes = 16;  ///< size, index, stream
 inline constexpr uint32_t kPushLimit = 128;   ///< what every Vulkan device has
 

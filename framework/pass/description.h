@@ -124,8 +124,8 @@ struct PortDescription {
   std::string name;
   PortType type;
   std::string doc;
-  bool required = true;       ///< inputs: must be connected
-  std::string passesThrough;  ///< outputs: the input that stands for this output when the pass is disabled
+  bool required = true;             ///< inputs: must be connected
+  std::string passesThrough;        ///< outputs: the input that stands for this output when the pass is disabled
   bool absentWhenDisabled = false;  ///< outputs: then nothing does, and optional inputs that read it are left open
   Meaning meaning = Meaning::Data;
 };

@@ -198,9 +198,9 @@ class Bench {
     run(counting_, c.compiled, true);
     record.cost.rays = countRays(*counting_, laboratory_.stage(), o_.settings);
     if (o_.floor)
-      record.floor = o_.floor({laboratory_, c.graph, c.overrides, executor_->graph(), o_.settings,
-                               record.cost.frameGpuMs ? record.cost.frameGpuMs->median : record.cost.wallMs,
-                               record.cost.rays});
+      record.floor =
+          o_.floor({laboratory_, c.graph, c.overrides, executor_->graph(), o_.settings,
+                    record.cost.frameGpuMs ? record.cost.frameGpuMs->median : record.cost.wallMs, record.cost.rays});
     if (o_.parts[c.part].reference.wanted()) addErrors(c, record);
     file_.configurations.push_back({c.id, recordJson(record)});
     writeBenchFile(o_.out, file_);

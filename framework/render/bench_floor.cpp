@@ -75,7 +75,8 @@ Plan planFor(const FloorInput& in) {
   }
   if (plan.camera) addPass(d, kCamera, "floor.CameraRays", "triangle");
   const uint64_t pixels = uint64_t{in.graph.width} * in.graph.height;
-  const auto words = static_cast<int64_t>(std::clamp<uint64_t>((bytesOfBuffers(in.graph) / 4 + pixels - 1) / pixels, 1, 1024));
+  const auto words =
+      static_cast<int64_t>(std::clamp<uint64_t>((bytesOfBuffers(in.graph) / 4 + pixels - 1) / pixels, 1, 1024));
   addPass(d, kBuffers, "floor.Buffers", "words", {}, {{"words", words, 0, 0, {}, {}}});
   plan.graph = graph::compile(d, in.laboratory.registry().catalog(), in.graph.width, in.graph.height, findings);
   if (!findings.empty()) throw graph::GraphError(findings);

@@ -38,10 +38,10 @@ struct FloorInput {
 
 using FloorFunction = std::function<std::optional<Floor>(const FloorInput&)>;
 
-/// Runs the configuration's graph with passes of the plugin `floor` beside its own, that trace the same rays and nothing
-/// else and read and write the bytes of its buffers once. Camera rays count as those of gbuffer.RayTraced; each other
-/// ray costs what the shadow rays of the graph's reservoirs cost in the mean, all its buffers what as many words cost.
-/// None on devices without timestamps. Throws RuntimeError, graph::GraphError.
+/// Runs the configuration's graph with passes of the plugin `floor` beside its own, that trace the same rays and
+/// nothing else and read and write the bytes of its buffers once. Camera rays count as those of gbuffer.RayTraced; each
+/// other ray costs what the shadow rays of the graph's reservoirs cost in the mean, all its buffers what as many words
+/// cost. None on devices without timestamps. Throws RuntimeError, graph::GraphError.
 std::optional<Floor> measureFloor(const FloorInput& in);
 
 }  // namespace weir::render

@@ -1,5 +1,6 @@
-// What a frame costs the hardware at the least: passes that only trace a ray, or only move bytes. `weir bench --floor` runs them beside a
-// graph and gives its time as a multiple of theirs; in a graph of one's own they tell what a ray costs on this scene.
+// What a frame costs the hardware at the least: passes that only trace a ray, or only move bytes. `weir bench --floor`
+// runs them beside a graph and gives its time as a multiple of theirs; in a graph of one's own they tell what a ray
+// costs on this scene.
 #pragma once
 
 #include <weir/pass/pass.h>

@@ -55,7 +55,9 @@ void Initial::prepare(PrepareContext& c) {
   const std::string tiles = c.text("tiles");
   if (c.integer("bsdfRays") > 0) {
     if (tiles == "on")
-      throw InputError("tiles 'on' and bsdfRays above 0 can't go together: what traces rays shares no memory; expected tiles 'auto' or 'off', or bsdfRays 0");
+      throw InputError(
+          "tiles 'on' and bsdfRays above 0 can't go together: what traces rays shares no memory; expected tiles 'auto' "
+          "or 'off', or bsdfRays 0");
     kernel_ = c.rayKernel("initial.glsl", {.defines = {{"BSDF_RAYS", "1"}}});
     return;
   }

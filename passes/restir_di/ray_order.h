@@ -13,8 +13,8 @@ struct RayWord {
   uint32_t bits;
 };
 
-/// What a pass with such rays holds: scratch_keys, which a kernel of its own fills, and scratch_order, by which a linear
-/// rayKernel shoots them.
+/// What a pass with such rays holds: scratch_keys, which a kernel of its own fills, and scratch_order, by which a
+/// linear rayKernel shoots them.
 class RayOrder {
  public:
   /// Before the pass's first kernel.

@@ -29,8 +29,9 @@ void describeReuse(PassDescription& d) {
           "Initial.visibility is off and Initial.bsdfRays 0");
   d.param("sparseRays", true)
       .doc(
-          "With visibilityRays, by pairwise: ask one neighbour alone, picked by chance, whether it sees the own sample, "
-          "and let it stand for all; else a ray for each neighbour. Unbiased either way");
+          "With visibilityRays, by pairwise: ask one neighbour alone, picked by chance, whether it sees the own "
+          "sample, "
+          "and let what that changes stand for all; else a ray for each neighbour. Unbiased either way");
   d.param("depthThreshold", 0.1f).range(0, 10).doc("Greatest difference of distance, relative to the distance");
   d.param("normalThreshold", 25.0f).range(0, 180).unit("degrees").doc("Greatest angle between shading normals");
   d.param("albedoThreshold", 1.0f)

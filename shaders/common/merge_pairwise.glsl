@@ -15,7 +15,8 @@ Reservoir merge(Surface surface, Reservoir own) {
   }
   const float ownTarget = luminance(ownLit);
   float ownMis = own.confidence / total;
-  // m_c is a sum over neighbours. With rays one of them, picked by chance, stands for all: its mean is the same, and W is linear in m_c.
+  // m_c is a sum over neighbours, of which each term wants to know whether the neighbour sees the own sample. With sparse rays all are
+  // taken to see it, and one, picked by chance, is asked: what its term is off by stands for all. W is linear in m_c, whose mean is right.
   uint asked = count;  // `count`: all
 #ifdef VISIBILITY_RAYS
   if (param_sparseRays && count > 1u) asked = min(uint(nextChance() * float(count)), count - 1u);
@@ -25,7 +26,7 @@ Reservoir merge(Surface surface, Reservoir own) {
     const Reservoir r = neighbourReservoir(i);
     const Surface neighbour = neighbourSurface(i);
     const float chance = nextChance();
-    if (ownTarget > 0.0 && (asked == count || asked == i)) {
+    if (ownTarget > 0.0) {
       Surface paired = neighbour;
 #ifdef WEIR_MUTANT
       paired.view = MUTANT(8, surface.view, paired.view);
@@ -33,10 +34,16 @@ Reservoir merge(Surface surface, Reservoir own) {
       paired.diffuse = MUTANT(11, surface.diffuse, paired.diffuse);
 #endif
       const LightSample there = lightThere(lightOf(own), own.place, neighbour.position);
-      const float here = own.confidence * ownTarget;
-      const float theirs = others * neighbourTarget(paired, there, isSeen(own) && isThisSurface(i)) * measureThere(there, ownLight);
-      const float part = MUTANT(17, 0.0, r.confidence / total * (here / (here + theirs)));
-      ownMis += asked == count ? part : part * MUTANT(72, 1.0, float(count));
+      const float here = own.confidence * ownTarget, share = MUTANT(17, 0.0, r.confidence / total);
+      const float seen = others * targetFunction(paired, there) * measureThere(there, ownLight);
+      const float part = share * (here / (here + seen));
+      ownMis += part;
+#ifdef VISIBILITY_RAYS
+      if ((asked == count || asked == i) && seen > 0.0 && !(isSeen(own) && isThisSurface(i))) {
+        const float theirs = MUTANT(6, seen, seen * visibilityThere(neighbour, there));
+        ownMis += (share * (here / (here + theirs)) - part) * (asked == count ? 1.0 : MUTANT(72, 1.0, float(count)));
+      }
+#endif
     }
     if (isNull(r)) continue;
     const LightSample here = evaluateLight(lightOf(r), r.place, surface.position);

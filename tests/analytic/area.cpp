@@ -107,7 +107,7 @@ Form coaxialDisc() {
           b.scene,
           camera,
           onFloor(camera, [=](const Vec& at) { return Vec(kRadiance) * irradiance(at, rim); }),
-          {allLights(1, 1), restir(16), pathTracer(0, 400)}};
+          {allLights(1, 1), restir(40), pathTracer(0, 400)}};
 }
 
 // A convex polyhedron: each face that faces the receiver shows it all of itself, and no other does.

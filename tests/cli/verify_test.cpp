@@ -116,7 +116,12 @@ TEST_F(Verify, OneWrongTileIsFound) {
 }
 
 TEST_F(Verify, AShortRunIsUndecidedAndSaysHowLongToRun) {
-  const Ran r = verify(restir, rendered() + "--restarts 16 --tolerance 0.0005 --json " + file("v.json"), 2);
+  const Ran r = verify(restir,
+                       rendered() +
+                           "--set temporal.visibilityRays=true --set spatial.visibilityRays=true --restarts 16 "
+                           "--tolerance 0.0005 --json " +
+                           file("v.json"),
+                       2);
   EXPECT_EQ(r.status, 3) << r.out << r.err;
   EXPECT_TRUE(has(r.out, "undecided")) << r.out;
   EXPECT_TRUE(has(r.out, "run longer: about")) << r.out;

@@ -40,7 +40,8 @@ TEST(Groups, WholeGroupsShareMemory) {
     ASSERT_EQ(out.size(), size_t{width} * height);
     for (uint32_t y = 0; y < height; ++y) {
       for (uint32_t x = 0; x < width; ++x) {
-        const uint32_t opposedX = x / side * side + side - 1 - x % side, opposedY = y / side * side + side - 1 - y % side;
+        const uint32_t opposedX = x / side * side + side - 1 - x % side,
+                       opposedY = y / side * side + side - 1 - y % side;
         ASSERT_EQ(~out[y * width + x], 1000 * opposedY + opposedX) << x << ", " << y;
       }
     }

@@ -90,7 +90,8 @@ TEST_F(Disable, ExtrasAreAbsent) {
   const auto graph = [](const char* input, const char* source) {
     return std::string(R"({"version": 1, "passes": {"s": {"type": "x.Source"},
 "f": {"type": "x.Filter", "inputs": {"color": "s.color"}},
-"r": {"type": "x.Reader", "inputs": {"color": "f.color", ")") + input + "\": \"" + source + R"("}}},
+"r": {"type": "x.Reader", "inputs": {"color": "f.color", ")") +
+           input + "\": \"" + source + R"("}}},
 "outputs": {"o": "r.color"}})";
   };
   const Result enabled = run(graph("extra", "f.extra"), fakes);
@@ -99,15 +100,15 @@ TEST_F(Disable, ExtrasAreAbsent) {
   const Result r = disable({"f"}, graph("extra", "f.extra"));
   EXPECT_EQ(r.text(), "");
   EXPECT_EQ(r.source("r", "color"), "s.color");
-  for (const Binding& b : r.graph.passes.back().inputs)
-    EXPECT_EQ(b.resource == kNone, b.port == "extra") << b.port;
+  for (const Binding& b : r.graph.passes.back().inputs) EXPECT_EQ(b.resource == kNone, b.port == "extra") << b.port;
   // Last frame's too.
   EXPECT_EQ(disable({"f"}, graph("extra", "f.extra@previous")).text(), "");
   std::string needed = graph("extra", "f.extra");
   needed = replaced(needed, "\"color\": \"f.color\", \"extra\"", "\"color\"");
   const Result failed = disable({"f"}, needed);
   ASSERT_EQ(failed.diagnostics.size(), 1u) << failed.text();
-  EXPECT_NE(failed.diagnostics[0].message.find("its output 'extra' is read and passes nothing through"), std::string::npos);
+  EXPECT_NE(failed.diagnostics[0].message.find("its output 'extra' is read and passes nothing through"),
+            std::string::npos);
 }
 
 TEST_F(Disable, ADisabledReaderDoesNotCount) {

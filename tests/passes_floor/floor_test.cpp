@@ -47,8 +47,9 @@ class Floor : public testing::Test {
     execute::ExecutorOptions executing;
     executing.backend = trace::chooseBackend("auto", *device_);
     executing.countRays = true;
-    executor_ = std::make_unique<execute::Executor>(
-        *device_, compiler_, registry_, gpu_, graph::compileText(json, "floor", {}, registry_.catalog(), options), executing);
+    executor_ = std::make_unique<execute::Executor>(*device_, compiler_, registry_, gpu_,
+                                                    graph::compileText(json, "floor", {}, registry_.catalog(), options),
+                                                    executing);
     executor_->frame({scene_.cameras.front(), 0, 3, false});
   }
   template <typename T>

@@ -167,7 +167,8 @@ TEST(RestirInitial, ChosenLightsFollowResampling) {
     PassTest t("restir_di.Initial");
     show(t, view, fourPoints());
     t.param("candidates", std::to_string(candidates)).param("visibility", "false").seed(3);
-    t.param("uniformShare", std::to_string(share));
+    // Each pixel by itself: those of a tile choose from the same picks, and counting them wants independent ones.
+    t.param("uniformShare", std::to_string(share)).param("tiles", "off");
     const oracle::World world(t.prepared());
     const size_t n = world.lights().size();
     ASSERT_EQ(n, 4u);

@@ -22,7 +22,8 @@ void expectNear(const Vec& actual, const Vec& expected, double scale, const std:
   for (int c = 0; c < 3; ++c) ASSERT_NEAR(actual[c], expected[c], 1e-4 * scale) << where << ", channel " << c;
 }
 
-// Where all pixels hold the same sample and weight, weights that sum to one leave f W of it, whoever the neighbours are.
+// Where all pixels hold the same sample and weight, weights that sum to one leave f W of it, whoever the neighbours
+// are.
 TEST(RestirLight, WeightsSumToOne) {
   const View view = planeView(kSide, kSide, frontCamera());
   const scene::Scene scene = smallScene({.blocker = false});
@@ -38,7 +39,8 @@ TEST(RestirLight, WeightsSumToOne) {
       double sum = 0.0;
       for (size_t i = 0; i < view.pixels(); ++i) {
         const Vec expected = world.contribution(view[i], reservoirs[i].light, reservoirs[i].place) * 0.7;
-        expectNear(pixelOf(light, i), expected, oracle::luminance(expected) + 1e-6, std::string(mis) + " pixel " + std::to_string(i));
+        expectNear(pixelOf(light, i), expected, oracle::luminance(expected) + 1e-6,
+                   std::string(mis) + " pixel " + std::to_string(i));
         sum += oracle::luminance(expected);
       }
       EXPECT_GT(sum, 0.0) << "nothing is lit";
@@ -46,7 +48,8 @@ TEST(RestirLight, WeightsSumToOne) {
   }
 }
 
-// A pixel without a sample of its own keeps what it chose alone: with it, what is hidden would leave others' light behind.
+// A pixel without a sample of its own keeps what it chose alone: with it, what is hidden would leave others' light
+// behind.
 TEST(RestirLight, WithoutOwnSampleTheChosenOneStandsAlone) {
   const View view = planeView(kSide, kSide, frontCamera());
   const scene::Scene scene = smallScene({.blocker = false});
@@ -56,7 +59,8 @@ TEST(RestirLight, WithoutOwnSampleTheChosenOneStandsAlone) {
   std::vector<Reservoir> reservoirs;
   for (size_t i = 0; i < view.pixels(); ++i) {
     const bool has = (i % kSide) % 2 == 0;
-    reservoirs.push_back({has ? static_cast<uint32_t>(i / kSide % world.lights().size()) : 0u, 77u << 20u, has ? 1.0f : 0.0f, 1.0f});
+    reservoirs.push_back(
+        {has ? static_cast<uint32_t>(i / kSide % world.lights().size()) : 0u, 77u << 20u, has ? 1.0f : 0.0f, 1.0f});
   }
   t.param("radius", "7").param("neighbours", "8").input("reservoirs", reservoirs).run();
   const std::vector<float> light = t.output<float>("light");
@@ -97,7 +101,11 @@ TEST(RestirLight, ShadeTakesBackWhatIsHidden) {
     }
     PassTest t("restir_di.Shade");
     show(t, view, scene);
-    t.count("reservoirs", samples).input("reservoirs", reservoirs).input("light", light).input("emission", emission).run();
+    t.count("reservoirs", samples)
+        .input("reservoirs", reservoirs)
+        .input("light", light)
+        .input("emission", emission)
+        .run();
     const std::vector<float> out = t.output<float>("color");
     int hidden = 0, half = 0, wrong = 0;
     for (size_t i = 0; i < view.pixels(); ++i) {
