@@ -24,7 +24,9 @@ struct PackedSurface {
 
 /// A reservoir of one light sample: 16 bytes. All zero is the empty reservoir: it adds nothing and has no confidence.
 struct Reservoir {
-  uint32_t light;    ///< light index; the top bit: the sample was seen from the reservoir's own pixel by a shadow ray
+  /// Light index below 2^30. The top bit: the sample was seen from the reservoir's own pixel by a shadow ray; the one
+  /// below it: it was hidden from there in the last frame, a hint.
+  uint32_t light;
   uint32_t place;    ///< where on the light, 2 × 16 bits
   float weight;      ///< W, the unbiased contribution weight: per m² for triangles; 0: no sample
   float confidence;  ///< c, in fresh frames

@@ -11,6 +11,10 @@ void Shade::describe(PassDescription& d) {
   d.input("light", storageImage(Format::RGBA32F))
       .optional()
       .doc("Spatial's: with it the chosen sample says only how much of the light of all merged ones is hidden");
+  d.output("reservoirs", perPixel<Reservoir>())
+      .countOf("reservoirs")
+      .passesThrough("reservoirs")
+      .doc("What came in, marked with what the final rays found: a history that needs fewer rays");
   d.output("color", storageImage(Format::RGBA32F)).radiance();
   d.param("visibility", true).specialises().doc("Shoot the final shadow ray; without it, light goes through walls");
   d.needs(Need::SceneGeometry).needs(Need::SceneMaterials).needs(Need::SceneLights).needs(Need::SceneAcceleration);

@@ -67,10 +67,19 @@ float neighbourTarget(Surface neighbour, LightSample light, bool seen) {
   return target;
 }
 
+// Whose neighbours are this pixel's own past, hands on what is known of their visibility from here as a hint.
+#ifdef PREVIOUS_DOMAIN
+const bool hintsStay = true;
+#else
+const bool hintsStay = false;
+#endif
+
 bool offerMerged(inout Selection selection, Reservoir r, vec3 f, float m, float W, bool seen, float chance) {
   const float target = luminance(f), weight = m * target * W;
   if (weight > 0.0 && !isinf(weight)) mergedLight += f * (m * W);
-  return offer(selection, lightOf(r), r.place, target, weight, seen, chance);
+  if (!offer(selection, lightOf(r), r.place, target, weight, seen, chance)) return false;
+  selection.hidden = hintsStay && wasHidden(r);
+  return true;
 }
 
 // f W of what was chosen, which stands for all.
@@ -85,7 +94,8 @@ Reservoir finishMerge(Selection selection, Surface surface, float confidence, Re
 #ifdef MIS_Z
   const bool alone = true;  // the others' Z are not known
 #else
-  const bool alone = isNull(own);  // where nothing of its own was seen, others' samples are likely hidden, too
+  // Where nothing of its own was seen, others' samples are likely hidden, too.
+  const bool alone = isNull(own) || wasHidden(own);
 #endif
   if (alone) mergedLight = standing(merged, surface);
 #endif

@@ -11,7 +11,11 @@
 // Set when a shadow ray from the reservoir's own pixel found its sample wholly visible.
 const uint kSeen = 0x80000000u;
 
-uint lightOf(Reservoir r) { return r.light & ~kSeen; }
+// Set by Shade when the final ray found it wholly hidden: a hint for the next frame, which no weight may depend on.
+const uint kHidden = 0x40000000u;
+
+uint lightOf(Reservoir r) { return r.light & ~(kSeen | kHidden); }
+bool wasHidden(Reservoir r) { return (r.light & kHidden) != 0u; }
 bool isSeen(Reservoir r) { return (r.light & kSeen) != 0u; }
 bool isNull(Reservoir r) { return !(r.weight > 0.0); }
 
@@ -75,9 +79,10 @@ struct Selection {
   float target;  // p̂ of the chosen sample at the merging pixel
   float sum;     // Σ w
   bool seen;     // the chosen one is known to be visible there
+  bool hidden;   // it was hidden from there in the last frame
 };
 
-Selection noSelection() { return Selection(0u, 0u, 0.0, 0.0, false); }
+Selection noSelection() { return Selection(0u, 0u, 0.0, 0.0, false, false); }
 
 // Whether it was taken: until another one is, it is what was chosen.
 bool offer(inout Selection s, uint light, uint place, float target, float weight, bool seen, float u) {
@@ -88,6 +93,7 @@ bool offer(inout Selection s, uint light, uint place, float target, float weight
   s.place = place;
   s.target = target;
   s.seen = seen;
+  s.hidden = false;
   return true;
 }
 
@@ -95,14 +101,14 @@ Reservoir finish(Selection s, float confidence) {
   if (!(s.sum > 0.0)) return nullReservoir(confidence);
   const float weight = s.sum / MUTANT(27, s.target * 1.004, s.target);
   if (isinf(weight)) return nullReservoir(confidence);
-  return Reservoir(s.light | (s.seen ? kSeen : 0u), s.place, weight, confidence);
+  return Reservoir(s.light | (s.seen ? kSeen : 0u) | (s.hidden ? kHidden : 0u), s.place, weight, confidence);
 }
 
 #ifdef CAN_TRACE
 // Shoots the shadow ray of a reservoir's own sample: a hidden one becomes a null sample (its W · f is zero either way).
 void testVisibility(inout Reservoir r, Surface s) {
   if (isNull(r) || isSeen(r)) return;
-  const float through = traceVisibility(s, evaluateLight(r.light, r.place, s.position));
+  const float through = traceVisibility(s, evaluateLight(lightOf(r), r.place, s.position));
   if (MUTANT(28, through < 1.0, through <= 0.0)) {
     r.light = 0u;
     r.weight = 0.0;

@@ -1,5 +1,6 @@
 // The picture: f(y) · V(y) · W(y), the mean over the pixel's reservoirs, plus what the surface itself emits. Here V is 1;
-// shade_visibility.glsl then shoots the rays of those samples that are not known to be seen, and takes back what is hidden.
+// shade_visibility.glsl then shoots the rays of those samples that are not known to be seen, takes back what is hidden, and marks the
+// reservoirs with what it found.
 //
 // With what the spatial merge found, Σ m_i f(y_i) W_i, the chosen sample y says only how much of that is hidden:
 // Σ m_i f(y_i) W_i + f(y) W (V(y) - 1) has the same mean (y is chosen so that f(y) W has that of the sum), and where y is seen it
@@ -19,6 +20,9 @@ void run(uvec2 pixel) {
     const Surface surface = unpackSurface(packed, pixel, camera, frameSize);
     for (uint k = 0u; k < in_reservoirs_count; ++k) {
       const Reservoir r = sanitized(in_reservoirs[index * in_reservoirs_count + k]);
+#ifdef wanted_out_reservoirs
+      out_reservoirs[index * in_reservoirs_count + k] = r;
+#endif
       if (isNull(r)) continue;
       const LightSample light = evaluateLight(lightOf(r), r.place, surface.position);
       const vec3 f = unshadowed(surface, light);
@@ -35,6 +39,11 @@ void run(uvec2 pixel) {
     sum = imageLoad(in_light, ivec2(pixel)).rgb;
 #endif
   }
+#ifdef wanted_out_reservoirs
+  if (!isSurface(packed)) {
+    for (uint k = 0u; k < in_reservoirs_count; ++k) out_reservoirs[index * in_reservoirs_count + k] = emptyReservoir();
+  }
+#endif
   imageStore(out_color, ivec2(pixel), vec4(imageLoad(in_emission, ivec2(pixel)).rgb + sum, 1.0));
 #ifdef FINAL_VISIBILITY
   scratch_keys[index].bits = ray ? rayKey(towards) : kNoRayKey;

@@ -10,10 +10,16 @@ void run(uvec2 id) {
   const Surface surface = unpackSurface(in_surface[index], pixel, camera, frameSize);
   vec3 arrives = vec3(0.0), hidden = vec3(0.0);
   for (uint k = 0u; k < in_reservoirs_count; ++k) {
-    const Reservoir r = sanitized(in_reservoirs[index * in_reservoirs_count + k]);
+    Reservoir r = sanitized(in_reservoirs[index * in_reservoirs_count + k]);
     if (isNull(r)) continue;
     const LightSample light = evaluateLight(lightOf(r), r.place, surface.position);
     const float through = isSeen(r) ? 1.0 : traceVisibility(surface, light);
+#ifdef wanted_out_reservoirs
+    if (!isSeen(r)) {
+      r.light = lightOf(r) | (through >= 1.0 ? kSeen : through <= 0.0 ? kHidden : 0u);
+      out_reservoirs[index * in_reservoirs_count + k] = r;
+    }
+#endif
     if (in_reservoirs_count == 1u && through >= 1.0) return;
     const vec3 f = unshadowed(surface, light) * r.weight;
     arrives += f * through;

@@ -70,7 +70,7 @@ scene::Scene pointScene(const std::vector<std::pair<glm::vec3, glm::vec3>>& posi
 
 /// Index of a reservoir's light without the bit that says "seen from its pixel".
 inline uint32_t lightOf(const passes::Reservoir& r) {
-  return r.light & 0x7fffffffu;
+  return r.light & 0x3fffffffu;
 }
 inline bool isSeen(const passes::Reservoir& r) {
   return (r.light & 0x80000000u) != 0;
