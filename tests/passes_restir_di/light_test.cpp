@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "laboratory.h"
 #include "setup.h"
+#include "support/small_scenes.h"
 
 namespace weir::test {
 namespace {
@@ -127,6 +129,91 @@ TEST(RestirLight, ShadeTakesBackWhatIsHidden) {
     // The edge of a shadow may fall either way in single precision.
     EXPECT_LE(wrong, 2 * static_cast<int>(samples));
   }
+}
+
+// What came in goes out, marked with what the final rays found, and with its weight: hidden samples too, as the merges'
+// domains hold them.
+TEST(RestirLight, ShadeMarksWhatRaysFound) {
+  constexpr uint32_t kSeen = 0x80000000u, kHidden = 0x40000000u;
+  View view = planeView(kSide, kSide, frontCamera());
+  for (uint32_t i = 0; i < kSide; i += 5) view.set(i, i, nothing());
+  const scene::Scene scene = smallScene({.veil = true});
+  const oracle::World world(scene::prepareScene(scene));
+  oracle::Random random(6);
+  std::vector<Reservoir> reservoirs;
+  for (size_t i = 0; i < view.pixels(); ++i) {
+    reservoirs.push_back({static_cast<uint32_t>(random() % world.lights().size()), static_cast<uint32_t>(random()),
+                          random() % 4 == 0 ? 0.0f : 0.5f, 2.0f});
+    if (random() % 4 == 0) reservoirs.back().light |= random() % 2 == 0 ? kSeen : kHidden;
+  }
+  PassTest t("restir_di.Shade");
+  t.leaveOpen("light");
+  show(t, view, scene);
+  t.input("reservoirs", reservoirs).run();
+  const std::vector<Reservoir> out = t.output<Reservoir>("reservoirs");
+  int seen = 0, hidden = 0, half = 0, wrong = 0;
+  for (size_t i = 0; i < view.pixels(); ++i) {
+    if (!view.has(i)) {
+      ASSERT_EQ(out[i].confidence, 0.0f) << i;
+      continue;
+    }
+    const Reservoir& r = reservoirs[i];
+    ASSERT_EQ(out[i].weight, r.weight) << i;
+    ASSERT_EQ(out[i].confidence, r.confidence) << i;
+    if (!(r.weight > 0.0f) || oracle::luminance(world.contribution(view[i], lightOf(r), r.place)) == 0.0) continue;
+    ASSERT_EQ(lightOf(out[i]), lightOf(r)) << i;
+    ASSERT_EQ(out[i].place, r.place) << i;
+    const double through = isSeen(r) ? 1.0 : world.transmittance(view[i], lightOf(r), r.place);
+    const uint32_t marks = through >= 1.0 ? kSeen : through <= 0.0 ? kHidden : 0u;
+    wrong += (out[i].light & (kSeen | kHidden)) == marks ? 0 : 1;
+    ++(marks == kSeen ? seen : marks == kHidden ? hidden : half);
+  }
+  EXPECT_GT(seen, 300);
+  EXPECT_GT(hidden, 50);
+  EXPECT_GT(half, 10);
+  EXPECT_LE(wrong, 2) << "the edge of a shadow may fall either way in single precision";
+}
+
+/// Rays of the frame after so many, of a graph over a floor with a block under two lamps.
+uint64_t raysOfFrame(uint32_t frames, const std::vector<std::string>& set, float step) {
+  Builder b;
+  scene::Material grey, lamp;
+  grey.baseColor = {0.6f, 0.6f, 0.6f, 1.0f};
+  grey.metallic = 0.0f;
+  lamp.emission = {9, 9, 9};
+  const int greyOne = b.material(grey), lampOne = b.material(lamp);
+  b.add(quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, greyOne));
+  b.add(quad({-0.6f, 0.5f, 0.6f}, {0.6f, 0.5f, 0.6f}, {0.6f, 0.5f, -0.6f}, {-0.6f, 0.5f, -0.6f}, greyOne));
+  for (const float x : {-1.0f, 1.0f})
+    b.add(quad({x - 0.3f, 2, -0.3f}, {x + 0.3f, 2, -0.3f}, {x + 0.3f, 2, 0.3f}, {x - 0.3f, 2, 0.3f}, lampOne));
+  const std::shared_ptr<gpu::Device> device = validatedDevice();
+  const ExpectNoValidationMessages guard(*device);
+  Registry registry({std::filesystem::path(binaryPath("bin"))});
+  const scene::PreparedScene prepared = scene::prepareScene(b.scene);
+  const scene::SceneGpu gpu(*device, b.scene, prepared, device->capabilities().accelerationStructure);
+  shader::Compiler compiler;
+  execute::ExecutorOptions options;
+  options.backend = trace::chooseBackend("auto", *device);
+  options.countRays = true;
+  execute::Executor executor(
+      *device, compiler, registry, gpu,
+      graph::compileFile(sourcePath("graphs/restir_di.json"), {.set = set, .enable = {}, .disable = {"spatial"}},
+                         registry.catalog(), kSide, kSide),
+      options);
+  for (uint32_t f = 0; f < frames; ++f)
+    executor.frame({lookAt({0.2f + step * static_cast<float>(f), 1.4f, 3.5f}, {0, 0.2f, 0}, 50), f, 5, false});
+  executor.finish();
+  return executor.rays();
+}
+
+// Where nothing moves, what rays have found holds on: temporal reuse with rays traces next to none of its own, and the
+// final ray is known. A camera that moves makes them all anew.
+TEST(RestirLight, StillPicturesTraceFewerRays) {
+  const std::vector<std::string> rays = {"temporal.visibilityRays=true", "gbuffer.jitter=false"};
+  const uint64_t first = raysOfFrame(1, rays, 0.0f), still = raysOfFrame(6, rays, 0.0f),
+                 moving = raysOfFrame(6, rays, 0.004f);
+  EXPECT_LT(still, first + first / 50);
+  EXPECT_GT(moving, first + first / 3);
 }
 
 }  // namespace
