@@ -58,7 +58,8 @@ class Laboratory {
 /// Tiles within Student's bound and the whole picture's bias within its interval. Chance of a false alarm of one
 /// scene's test: 1e-3 for the tiles of its four settings together, and as much for the four means.
 void expectUnbiased(const std::string& scene, uint32_t referenceRestarts, const std::string& referenceSamples,
-                    const std::string& candidates, const std::string& environment = "", double detectable = 0.03) {
+                    const std::string& candidates, const std::string& environment = "", double detectable = 0.03,
+                    const std::string& tiles = "auto") {
   Laboratory laboratory(scene, environment);
   const image::RestartAccumulator reference = laboratory.run(
       "graphs/all_lights.json", {.set = {"direct.samples=" + referenceSamples}, .enable = {}, .disable = {}},
@@ -75,8 +76,8 @@ void expectUnbiased(const std::string& scene, uint32_t referenceRestarts, const 
   for (const auto& s : settings) {
     SCOPED_TRACE(s.name);
     const graph::Overrides overrides{
-        .set = {"initial.candidates=" + candidates, "temporal.visibilityRays=true", "spatial.visibilityRays=true",
-                "temporal.confidenceCap=4", "spatial.radius=12"},
+        .set = {"initial.candidates=" + candidates, "initial.tiles=" + tiles, "temporal.visibilityRays=true",
+                "spatial.visibilityRays=true", "temporal.confidenceCap=4", "spatial.radius=12"},
         .enable = {},
         .disable = s.disable};
     const image::RestartAccumulator measured = laboratory.run("graphs/restir_di.json", overrides, 24, s.frames, 7);
@@ -97,7 +98,9 @@ TEST(RestirEndToEnd, CornellBox) {
   expectUnbiased("scenes/cornell.glb", 24, "4", "8");
 }
 TEST(RestirEndToEnd, ThousandPoints) {
-  expectUnbiased("scenes/cornell-1000-points.glb", 3, "1", "128");
+  // Each pixel by itself: with picks shared by 256 pixels the means of so small tiles vary three times as much, and
+  // this test wants to find three percent. RestirTiles has the tiles.
+  expectUnbiased("scenes/cornell-1000-points.glb", 3, "1", "128", "", 0.03, "off");
 }
 
 // The lamp and the sky that comes in at the open front.

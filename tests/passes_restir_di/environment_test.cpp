@@ -145,6 +145,7 @@ TEST(RestirEnvironment, ShadeLooksAlongThePlace) {
   const EnvironmentOracle environment(scene.environment);
   const View view = planeView(16, 16, frontCamera());
   PassTest t("restir_di.Shade");
+  t.leaveOpen("light");
   show(t, view, scene);
   t.param("visibility", "false");
   std::vector<Reservoir> reservoirs(view.pixels());
