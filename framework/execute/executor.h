@@ -76,6 +76,15 @@ class Executor {
   /// Raw bytes of a resource ("pass.port") as the last frame left it. InputError where somebody else uses the memory:
   /// compile the graph with `keep`.
   std::vector<std::byte> readResource(const std::string& name, uint32_t lane = 0);
+  /// Where a resource ("pass.port", "pass.port@previous" for the frame before) lies after the last frame.
+  struct Located {
+    const Storage* storage = nullptr;  ///< images are in VK_IMAGE_LAYOUT_GENERAL
+    const graph::Resource* resource = nullptr;
+  };
+  /// For commands that are submitted to the device's queue before the next frame is: they begin with a barrier that
+  /// waits for everything earlier, and end with one that everything later waits for. Valid until the next frame, swap
+  /// or restart. InputError as for readResource(), and before the graph has run.
+  Located locate(const std::string& name, uint32_t lane = 0) const;
   /// For tests: what a resource holds before the next frame, in the first lane; of one that shares memory, until
   /// somebody else takes it.
   void writeResource(const std::string& name, std::span<const std::byte> bytes);
@@ -122,6 +131,7 @@ class Executor {
   void deliver(Slot& slot);
   void notFromSink(const char* what) const;
   uint32_t resourceNamed(const std::string& name) const;
+  void requireKept(const graph::Resource& resource, const std::string& name) const;
   std::vector<std::byte> download(const Storage& storage);
 
   const gpu::Device& device_;

@@ -120,17 +120,33 @@ const Storage& Executor::lastStorage(uint32_t resource, bool previous, uint32_t 
   return runtime_->resources(lane).at(resource, parity, previous);
 }
 
-std::vector<std::byte> Executor::readResource(const std::string& name, uint32_t lane) {
-  finish();
-  const uint32_t index = resourceNamed(name);
-  const graph::Resource& r = graph().resources[index];
+void Executor::requireKept(const graph::Resource& r, const std::string& name) const {
   if (r.external) throw InputError(fmt::format("'{}' is the host's: ask the host for it", name));
   if (r.depth) throw InputError(fmt::format("'{}' is a depth buffer, which is not read back", name));
   if (r.transient() && r.shares && !r.graphOutput && !r.kept)
     throw InputError(fmt::format("'{}' is not kept to the frame's end: other resources use its memory", name));
   if (r.transient() && r.shares && !runtime_->recorded())
     throw InputError(fmt::format("'{}' can't be read before graph '{}' has run", name, graph().name));
+}
+
+std::vector<std::byte> Executor::readResource(const std::string& name, uint32_t lane) {
+  finish();
+  const uint32_t index = resourceNamed(name);
+  requireKept(graph().resources[index], name);
   return download(lastStorage(index, false, lane));
+}
+
+Executor::Located Executor::locate(const std::string& name, uint32_t lane) const {
+  constexpr std::string_view kPrevious = "@previous";
+  const bool previous = name.ends_with(kPrevious);
+  const std::string port = previous ? name.substr(0, name.size() - kPrevious.size()) : name;
+  const uint32_t index = resourceNamed(port);
+  const graph::Resource& resource = graph().resources[index];
+  requireKept(resource, name);
+  if (previous && !resource.history) throw InputError(fmt::format("'{}': nobody reads it, so it has no history", name));
+  if (!runtime_->recorded())
+    throw InputError(fmt::format("'{}' can't be read before graph '{}' has run", name, graph().name));
+  return {&lastStorage(index, previous, lane), &resource};
 }
 
 void Executor::writeResource(const std::string& name, std::span<const std::byte> bytes) {

@@ -91,7 +91,7 @@ void Device::create(const DeviceOptions& options) {
       .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
       .pfnUserCallback = &Device::receive,
       .pUserData = messages_.get()};
-  instance_ = createInstance(options.validation, &messenger);
+  instance_ = createInstance(options.validation, &messenger, options.windowExtensions);
   debugUtils_ = hasDebugUtils();
   if (options.validation && debugUtils_) {
     check(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_),
@@ -99,10 +99,11 @@ void Device::create(const DeviceOptions& options) {
   }
   const std::vector<Probe> probes = probeDevices(instance_, options);
   const Probe& chosen = chooseDevice(probes, options.choice);
+  if (!options.windowExtensions.empty()) requireSwapchain(chosen);
   info_ = chosen.info;
   physical_ = chosen.physical;
   queueFamily_ = chosen.queueFamily;
-  createHandle();
+  createHandle(!options.windowExtensions.empty());
   createServices(options.cacheFolder);
 }
 
@@ -119,12 +120,13 @@ void Device::createServices(const std::string& cache) {
   check(vkCreateFence(device_, &fence, nullptr, &immediate_->fence), "vkCreateFence");
 }
 
-void Device::createHandle() {
+void Device::createHandle(bool shows) {
   const Capabilities& has = info_.capabilities;
   FeatureChain wanted(has.accelerationStructure, has.rayPipeline, has.rayQuery);
   wantFeatures(physical_, has, wanted);
 
-  const std::vector<const char*> extensions = deviceExtensions(has);
+  std::vector<const char*> extensions = deviceExtensions(has);
+  if (shows) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   const float priority = 1.0f;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                       .queueFamilyIndex = queueFamily_,

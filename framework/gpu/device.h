@@ -18,6 +18,9 @@ struct DeviceOptions {
   bool hideRayTracing = false;  ///< as if the device had none (tests of the raster path)
   bool hideRayQuery = false, hideRayPipeline = false;
   std::string cacheFolder;  ///< for the pipeline cache; empty: as `shader::Compiler`; "-": none
+  /// What a window asks of the instance, with which the device gets VK_KHR_swapchain; empty: nothing is shown.
+  /// InputError where the instance or the device lacks it.
+  std::vector<std::string> windowExtensions;
 };
 
 /// A device that somebody else made and owns, and what it was made with. It must outlive whatever adopts it.
@@ -136,7 +139,7 @@ class Device {
                                     VkDebugUtilsMessageTypeFlagsEXT types,
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
   void create(const DeviceOptions& options);
-  void createHandle();
+  void createHandle(bool shows);
   void createServices(const std::string& cache);
   void createAllocator();
   void destroy() noexcept;

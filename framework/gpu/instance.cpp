@@ -80,7 +80,8 @@ void loadVulkan(PFN_vkGetInstanceProcAddr loader) {
   loaded = true;
 }
 
-VkInstance createInstance(bool validation, const VkDebugUtilsMessengerCreateInfoEXT* messages) {
+VkInstance createInstance(bool validation, const VkDebugUtilsMessengerCreateInfoEXT* messages,
+                          const std::vector<std::string>& wanted) {
   loadVulkanLibrary(nullptr);
   static constexpr const char* kLayer = "VK_LAYER_KHRONOS_validation";
   if (validation && !layerInstalled(kLayer)) {
@@ -91,8 +92,14 @@ VkInstance createInstance(bool validation, const VkDebugUtilsMessengerCreateInfo
     throw RuntimeError(
         fmt::format("The Vulkan loader is version {}, and Weir needs 1.3.", versionText(volkGetInstanceVersion())));
   }
-  // Every instance of a process has the same extensions, so that the shared function pointers suit them all.
+  // Every instance of a process has the same extensions, so that the shared function pointers suit them all; a window's
+  // are wanted by the first one or not at all.
   std::vector<const char*> extensions;
+  for (const std::string& name : wanted) {
+    if (!instanceExtensionAvailable(name.c_str()))
+      throw InputError(fmt::format("There can be no window: Vulkan on this machine lacks {}.", name));
+    extensions.push_back(name.c_str());
+  }
   const bool utils = instanceExtensionAvailable(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   if (utils) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   debugUtils = utils;

@@ -197,4 +197,10 @@ const Probe& chooseDevice(const std::vector<Probe>& probes, const std::string& c
   return *best;
 }
 
+void requireSwapchain(const Probe& probe) {
+  if (!extensionNames(probe.physical).contains(VK_KHR_SWAPCHAIN_EXTENSION_NAME))
+    throw InputError(
+        fmt::format("{} cannot show windows: it lacks {}", probe.info.name, VK_KHR_SWAPCHAIN_EXTENSION_NAME));
+}
+
 }  // namespace weir::gpu

@@ -54,8 +54,10 @@ struct Probe {
 void loadVulkan(PFN_vkGetInstanceProcAddr loader);
 
 /// Loads the Vulkan library once per process and creates an instance. RuntimeError when there is no Vulkan or no
-/// driver. `messages`, when given, also hears about the instance's own creation; it needs `validation`.
-VkInstance createInstance(bool validation, const VkDebugUtilsMessengerCreateInfoEXT* messages);
+/// driver. `messages`, when given, also hears about the instance's own creation; it needs `validation`. InputError
+/// where one of the `wanted` extensions isn't there.
+VkInstance createInstance(bool validation, const VkDebugUtilsMessengerCreateInfoEXT* messages,
+                          const std::vector<std::string>& wanted = {});
 
 /// Whether instances get VK_EXT_debug_utils (object names and labels). Only after `createInstance`.
 bool hasDebugUtils();
@@ -71,6 +73,9 @@ const Probe& chooseDevice(const std::vector<Probe>& probes, const std::string& c
 
 /// Extensions to enable for these capabilities.
 std::vector<const char*> deviceExtensions(const Capabilities& capabilities);
+
+/// InputError, naming the device, unless it can show pictures in windows.
+void requireSwapchain(const Probe& probe);
 
 /// "1.3.275"
 std::string versionText(uint32_t version);
