@@ -13,6 +13,7 @@ BASE=(
   libdraco-dev libmeshoptimizer-dev libembree-dev
   nlohmann-json3-dev libcli11-dev libfmt-dev libgtest-dev libbenchmark-dev python3 python3-jsonschema patchelf
   openimageio-tools parallel chromium
+  libglfw3-dev libimgui-dev fonts-dejavu-core xvfb xauth
 )
 # For the page of weir chart. Node from elsewhere brings an npm of its own, whose package Debian's conflicts with.
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then BASE+=(nodejs npm); fi
