@@ -38,6 +38,16 @@ Session::Session(const gpu::Device& device, shader::Compiler& compiler, Registry
   watch(before);
 }
 
+Session::Session(const gpu::Device& device, shader::Compiler& compiler, Registry& registry,
+                 const scene::SceneGpu& scene, const std::string& graphFile, const std::string& json,
+                 const graph::CompileOptions& compileOptions, const execute::ExecutorOptions& executorOptions)
+    : registry_(registry), graphFile_(graphFile), json_(json), options_(compileOptions) {
+  const WatchedFiles::Moment before = WatchedFiles::now();
+  executor_ = std::make_unique<execute::Executor>(device, compiler, registry, scene, compile(overrides_, options_),
+                                                  executorOptions);
+  watch(before);
+}
+
 graph::CompiledGraph Session::compile(const graph::Overrides& overrides, const graph::CompileOptions& options) const {
   if (json_) return graph::compileText(*json_, graphFile_, overrides, registry_.catalog(), options);
   return graph::compileFile(graphFile_, overrides, registry_.catalog(), options);

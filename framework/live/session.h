@@ -31,7 +31,13 @@ class Session {
           const std::string& graphFile, const graph::Overrides& overrides, const graph::CompileOptions& compileOptions,
           const execute::ExecutorOptions& executorOptions);
 
+  /// The same with a graph that is edited, as by edit().
+  Session(const gpu::Device& device, shader::Compiler& compiler, Registry& registry, const scene::SceneGpu& scene,
+          const std::string& graphFile, const std::string& json, const graph::CompileOptions& compileOptions,
+          const execute::ExecutorOptions& executorOptions);
+
   execute::Executor& executor() { return *executor_; }
+  const execute::Executor& executor() const { return *executor_; }
   const graph::Overrides& overrides() const { return overrides_; }
 
   /// Looks whether files changed and follows them. Between two frames.
