@@ -193,6 +193,7 @@ std::optional<PixelPlace> PictureView::pixelAt(glm::vec2 canvasPoint) const {
 
 void PictureView::compose(VkCommandBuffer commands, uint32_t slot, const gpu::Image& canvas, const Rect& rect,
                           Engine& engine, std::optional<PixelPlace> probe) {
+  collect(slot, engine.stage().prepared.lights);
   pictures_.begin(slot);
   if (fitted_) placement_ = fit(a_.extent, rect);
   if (!fitted_ && centredScale_ > 0.0f) {

@@ -69,8 +69,6 @@ class PictureView {
   /// `rect` of the canvas; `canvas` in VK_IMAGE_LAYOUT_GENERAL. `probe`: a pixel to say in words.
   void compose(VkCommandBuffer commands, uint32_t slot, const gpu::Image& canvas, const Rect& rect, Engine& engine,
                std::optional<PixelPlace> probe);
-  /// What the last frames brought: words and measurements. `lights` of the scene.
-  void collect(uint32_t slot, const std::vector<scene::GpuLight>& lights);
   const std::vector<Row>& words() const { return words_; }
   /// Every file that the window's shaders were read from.
   std::set<std::string> files() const { return pictures_.files(); }
@@ -78,6 +76,8 @@ class PictureView {
  private:
   enum class Beside : uint8_t { Nothing, Second, Picture, Source };
   void list(const Engine& engine);
+  /// What the slot's last frame brought: words and measurements.
+  void collect(uint32_t slot, const std::vector<scene::GpuLight>& lights);
   bool take(Engine& engine, const std::string& port);
   void drawBeside(VkCommandBuffer commands, const gpu::Image& canvas, const Rect& clip, Engine& engine);
 

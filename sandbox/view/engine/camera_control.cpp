@@ -18,12 +18,13 @@ float sizeOf(const scene::Bounds& bounds) {
 
 }  // namespace
 
-CameraControl::CameraControl(const scene::Camera& camera, const scene::Bounds& bounds) : bounds_(bounds) {
+CameraControl::CameraControl(const scene::Camera& camera, const std::string& words, const scene::Bounds& bounds)
+    : bounds_(bounds) {
   speed_ = 0.3f * sizeOf(bounds);
-  set(camera);
+  set(camera, words);
 }
 
-void CameraControl::set(const scene::Camera& camera) {
+void CameraControl::set(const scene::Camera& camera, const std::string& words) {
   camera_ = camera;
   eye_ = camera.eye;
   degrees_ = glm::degrees(camera.verticalFov);
@@ -31,8 +32,8 @@ void CameraControl::set(const scene::Camera& camera) {
   const float size = sizeOf(bounds_);
   const float middle = glm::dot(bounds_.centre() - eye_, camera.forward);
   target_ = eye_ + camera.forward * std::clamp(middle, 0.1f * size, 4.0f * size);
-  text_ = camera.name;
-  if (text_.empty()) settle();
+  text_ = words;
+  untouched_ = true;
   ++revision_;
 }
 
@@ -42,6 +43,7 @@ void CameraControl::settle() {
   text_ = fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", eye_.x, eye_.y, eye_.z, target_.x, target_.y,
                       target_.z, degrees_);
   camera_ = scene::chooseCamera(scene::Scene{}, text_, 1.0f, &bounds_);
+  untouched_ = false;
   ++revision_;
 }
 

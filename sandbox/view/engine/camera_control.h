@@ -11,11 +11,11 @@ namespace weir::view {
 
 class CameraControl {
  public:
-  /// `bounds` of the scene: how far a step goes.
-  CameraControl(const scene::Camera& camera, const scene::Bounds& bounds);
+  /// `bounds` of the scene: how far a step goes. `words` of `--camera` that give this camera; empty: without any.
+  CameraControl(const scene::Camera& camera, const std::string& words, const scene::Bounds& bounds);
 
-  /// One of the scene's own cameras, as it is, until it is moved.
-  void set(const scene::Camera& camera);
+  /// A camera as it is, until it is moved.
+  void set(const scene::Camera& camera, const std::string& words);
   /// Looks from where it is at all of the bounds; `aspect` = width / height.
   void frame(float aspect);
   /// Turns round the point that it looks at; radians to the right and up.
@@ -35,8 +35,10 @@ class CameraControl {
   float fieldOfView() const;  ///< vertical, degrees
   float speed() const { return speed_; }
   const glm::vec3& target() const { return target_; }
-  /// "ex,ey,ez,tx,ty,tz,vfov", or the name of the scene's camera if it was not moved since.
+  /// For `--camera`: "ex,ey,ez,tx,ty,tz,vfov", or what it was set with if it was not moved since.
   const std::string& text() const { return text_; }
+  /// It was not moved since it was set.
+  bool untouched() const { return untouched_; }
   /// Counts changes.
   uint64_t revision() const { return revision_; }
 
@@ -49,6 +51,7 @@ class CameraControl {
   glm::vec3 eye_{0.0f}, target_{0.0f};
   float degrees_ = 45.0f, speed_ = 1.0f;
   std::string text_;
+  bool untouched_ = true;
   uint64_t revision_ = 0;
 };
 

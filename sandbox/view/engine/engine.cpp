@@ -185,17 +185,17 @@ void Engine::setLight(size_t index, const scene::PunctualLight& light) {
   ++sceneRevision_;
 }
 
-bool Engine::advance(const scene::Camera& camera, bool cameraIsScenes) {
+bool Engine::advance(const std::optional<scene::Camera>& camera) {
   if (paused_) return false;
   const render::Stage& stage = *staged_.stage;
   const uint32_t number = firstFrame_ + frames_;
   execute::FrameInput input = stage.playback ? staged_.player->frameAt(seconds_, number, seed_)
                                              : staged_.player->frame(number, seed_);
-  // A camera of the scene's goes where its clip takes it.
-  if (!cameraIsScenes || !stage.playback) input.camera = camera;
+  if (camera) input.camera = *camera;
   session_->executor().frame(input);
   if (second_) second_->executor().frame(input);
   lastInput_ = input;
+  shownSeconds_ = seconds_;
   ++frames_;
   if (stage.playback && plays_) seconds_ += stage.playback->step;
   if (left_ && --*left_ == 0) {

@@ -81,7 +81,9 @@ class Engine {
 
   // -------------------------------------------------------------------------------------------------- time
   /// Renders the next frame of the graphs, if there is one to be. False when paused.
-  bool advance(const scene::Camera& camera, bool cameraIsScenes);
+  /// `camera` where the scene's own, setSceneCamera()'s, is not meant: that goes where a clip takes it.
+  bool advance(const std::optional<scene::Camera>& camera);
+  void setSceneCamera(const scene::Camera& camera) { staged_.stage->camera = camera; }
   bool paused() const { return paused_; }
   void setPaused(bool paused);
   /// One frame more, then paused.
@@ -95,7 +97,8 @@ class Engine {
   uint32_t firstFrame() const { return firstFrame_; }
   uint32_t seed() const { return seed_; }
   /// Animation, where the scene has been loaded with one: seconds, and whether it goes on.
-  double seconds() const { return seconds_; }
+  double seconds() const { return seconds_; }       ///< of the next frame
+  double shownSeconds() const { return shownSeconds_; }  ///< of the last one
   void setSeconds(double seconds);
   bool plays() const { return plays_; }
   void setPlays(bool plays) { plays_ = plays; }
@@ -124,7 +127,7 @@ class Engine {
   uint32_t seed_, firstFrame_, frames_ = 0;
   bool paused_ = false, plays_ = true;
   std::optional<uint32_t> left_;  ///< frames to go until it pauses
-  double seconds_ = 0.0;
+  double seconds_ = 0.0, shownSeconds_ = 0.0;
   execute::FrameInput lastInput_;
   uint64_t sceneRevision_ = 1;
 };

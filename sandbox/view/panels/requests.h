@@ -16,6 +16,7 @@ namespace weir::view {
 struct OpenGraph { std::string file; };
 struct OpenScene { std::string file; };
 struct SaveGraph { std::string file; };  ///< empty: where it came from
+struct Revert {};  ///< takes what the graph's file says
 struct OpenSecond { std::string file; };  ///< graph or picture for the right side; empty: none
 struct SaveShot { std::string file; };  ///< .png or .exr of the shown output
 struct SaveSequence {
@@ -48,7 +49,7 @@ struct SetSceneLights {  ///< `--lights N --replace-lights`; 0: the scene's own
 struct Dismiss { uint64_t message; };
 struct CancelWork {};  ///< a sequence that is being written
 
-using Request = std::variant<OpenGraph, OpenScene, SaveGraph, OpenSecond, SaveShot, SaveSequence, CopyCommand, Quit,
+using Request = std::variant<OpenGraph, OpenScene, SaveGraph, Revert, OpenSecond, SaveShot, SaveSequence, CopyCommand, Quit,
                              SetPaused, StepFrame, Restart, RunFrames, SetCountRays, SetPacing, SetRenderScale,
                              SetFixedSize, ChooseCamera, SetFieldOfView, SetSpeed, SetLight, SetSeconds, SetPlays,
                              ChooseClip, SetSceneLights, Dismiss, CancelWork>;
