@@ -129,7 +129,8 @@ void Document::edit(std::string text, std::string what, std::string about, bool 
 void Document::push(Step step) {
   undo_.push_back(std::move(step));
   size_t bytes = 0, kept = 0;
-  while (kept < undo_.size() && kept < kMostSteps && bytes <= kMostBytes) bytes += undo_[undo_.size() - ++kept].text.size();
+  while (kept < undo_.size() && kept < kMostSteps && bytes <= kMostBytes)
+    bytes += undo_[undo_.size() - ++kept].text.size();
   undo_.erase(undo_.begin(), undo_.end() - static_cast<std::ptrdiff_t>(kept));
 }
 
@@ -171,8 +172,7 @@ void Document::setEnabled(const std::string& pass, bool enabled) {
        fmt::format("{} {}", pass, enabled ? "enabled" : "disabled"));
 }
 
-void Document::setInput(const std::string& pass, const std::string& port,
-                        const std::optional<std::string>& reference) {
+void Document::setInput(const std::string& pass, const std::string& port, const std::optional<std::string>& reference) {
   requirePass(pass);
   edit(reference ? withinPass(text_, pass, "inputs", port, quoted(*reference)) : pruned(text_, pass, "inputs", port),
        fmt::format("what {}.{} reads", pass, port));

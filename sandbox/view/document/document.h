@@ -30,7 +30,7 @@ class Document {
   static Document fromText(std::string text, std::string file);
 
   const std::string& file() const { return file_; }
-  const std::string& text() const { return text_; }       ///< what saving writes
+  const std::string& text() const { return text_; }        ///< what saving writes
   const std::string& savedText() const { return saved_; }  ///< what the file has, as far as we know
   /// What the text says; lines are those of the text.
   const graph::Description& description() const { return description_; }

@@ -1,5 +1,5 @@
-// Edits of JSON as text: what is not edited stays as it was written, byte for byte, with its order, spaces and spelling.
-// Texts are valid JSON without repeated keys: graph::parse has seen them.
+// Edits of JSON as text: what is not edited stays as it was written, byte for byte, with its order, spaces and
+// spelling. Texts are valid JSON without repeated keys: graph::parse has seen them.
 #pragma once
 
 #include <cstddef>

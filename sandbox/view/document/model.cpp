@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <compare>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -30,15 +32,17 @@ class Builder {
     model_.undoes = document_.undoes();
     model_.redoes = document_.redoes();
     model_.problems = input_.problems;
-    for (const PassEntry& entry : description_.passes) types_[entry.name] = input_.context.catalog.find(entry.type);
+    for (const PassEntry& entry : description_.passes)
+      passes_[entry.name] = {&entry, input_.context.catalog.find(entry.type), {}, false};
     for (const std::string& name : order()) {
       indices_[name] = model_.passes.size();
-      model_.passes.push_back(passOf(*description_.find(name)));
+      model_.passes.push_back(passOf(passes_.at(name)));
     }
     connect();
+    findNeeded();
     for (PassModel& pass : model_.passes) pass.mustRun = mustRun(pass);
     place();
-    if (description_.find(input_.choicesOf)) {
+    if (passes_.contains(input_.choicesOf)) {
       model_.choicesOf = input_.choicesOf;
       model_.choices = fittingTypes(document_, input_.context, input_.choicesOf);
     }
@@ -46,54 +50,85 @@ class Builder {
   }
 
  private:
-  /// The passes that run, in their order, and each of the others behind the last thing that it reads, so that it stands
-  /// where it would run.
+  /// Where a pass stands: running ones at odd numbers, others between them.
+  struct Rank {
+    size_t at = 0, sequence = 0;
+    auto operator<=>(const Rank&) const = default;
+  };
+  struct Entry {
+    const PassEntry* entry = nullptr;
+    const PassDescription* type = nullptr;
+    std::optional<Rank> rank;
+    bool runs = false;
+  };
+
+  /// The passes that run, in their order, and each of the others behind the last thing that it reads, or before the
+  /// first that reads it, so that it stands where it would run.
   std::vector<std::string> order() {
-    std::vector<std::string> names;
+    size_t running = 0;
     if (input_.running)
       for (const graph::CompiledPass& pass : input_.running->passes)
-        if (description_.find(pass.name)) names.push_back(pass.name);
-    running_.insert(names.begin(), names.end());
-    std::vector<const PassEntry*> open;
+        if (const auto found = passes_.find(pass.name); found != passes_.end()) {
+          found->second.rank = Rank{2 * running++ + 1, 0};
+          found->second.runs = true;
+        }
+    std::map<std::string, size_t, std::less<>> firstReader;
+    for (const auto& [name, pass] : passes_)
+      for (const InputEntry& in : pass.entry->inputs)
+        if (pass.runs && in.source && !in.source->previous) {
+          const auto [first, isNew] = firstReader.emplace(in.source->pass, pass.rank->at);
+          first->second = std::min(first->second, pass.rank->at);
+        }
+    size_t sequence = 0;
+    std::set<const PassEntry*> visited;
     for (const PassEntry& entry : description_.passes)
-      if (!running_.contains(entry.name)) open.push_back(&entry);
-    while (!open.empty()) {
-      // One whose sources stand already, or where passes read each other in a circle any.
-      const std::set<std::string, std::less<>> placed(names.begin(), names.end());
-      auto next = std::find_if(open.begin(), open.end(), [&](const PassEntry* entry) {
-        return std::all_of(entry->inputs.begin(), entry->inputs.end(), [&](const InputEntry& in) {
-          return !in.source || in.source->previous || placed.contains(in.source->pass) ||
-                 !description_.find(in.source->pass);
-        });
-      });
-      if (next == open.end()) next = open.begin();
-      names.insert(names.begin() + static_cast<std::ptrdiff_t>(placeOf(**next, names)), (*next)->name);
-      open.erase(next);
-    }
+      rank(passes_.at(entry.name), 2 * running, firstReader, visited, sequence);
+    std::vector<std::pair<Rank, std::string>> ranked;
+    for (const auto& [name, pass] : passes_) ranked.emplace_back(*pass.rank, name);
+    std::sort(ranked.begin(), ranked.end());
+    std::vector<std::string> names;
+    for (auto& [unused, name] : ranked) names.push_back(std::move(name));
     return names;
   }
 
-  size_t placeOf(const PassEntry& entry, const std::vector<std::string>& names) const {
-    size_t behind = 0;
-    for (const InputEntry& in : entry.inputs)
-      if (in.source && !in.source->previous)
-        for (size_t i = 0; i < names.size(); ++i)
-          if (names[i] == in.source->pass) behind = std::max(behind, i + 1);
-    if (behind > 0) return behind;
-    for (size_t i = 0; i < names.size(); ++i)
-      for (const InputEntry& in : description_.find(names[i])->inputs)
-        if (in.source && !in.source->previous && in.source->pass == entry.name) return i;
-    return names.size();
+  /// Depth first, so that what a pass reads has its rank before it; a circle is cut where it closes.
+  void rank(Entry& start, size_t last, const std::map<std::string, size_t, std::less<>>& firstReader,
+            std::set<const PassEntry*>& visited, size_t& sequence) {
+    std::vector<std::pair<Entry*, size_t>> path;  // and which input comes next
+    const auto enter = [&](Entry& pass) {
+      if (!pass.rank && visited.insert(pass.entry).second) path.emplace_back(&pass, 0);
+    };
+    enter(start);
+    while (!path.empty()) {
+      auto& [pass, next] = path.back();
+      const std::vector<InputEntry>& inputs = pass->entry->inputs;
+      if (next < inputs.size()) {
+        const InputEntry& in = inputs[next++];
+        const auto source = in.source && !in.source->previous ? passes_.find(in.source->pass) : passes_.end();
+        if (source != passes_.end()) enter(source->second);
+        continue;
+      }
+      size_t behind = 0;
+      for (const InputEntry& in : inputs)
+        if (in.source && !in.source->previous)
+          if (const auto source = passes_.find(in.source->pass); source != passes_.end() && source->second.rank)
+            behind = std::max(behind, (source->second.rank->at + 1) / 2 * 2);
+      const auto reader = firstReader.find(pass->entry->name);
+      const size_t alone = reader == firstReader.end() ? last : reader->second - 1;
+      pass->rank = Rank{behind > 0 ? behind : alone, ++sequence};
+      path.pop_back();
+    }
   }
 
-  PassModel passOf(const PassEntry& entry) const {
+  PassModel passOf(const Entry& known) const {
+    const PassEntry& entry = *known.entry;
     PassModel pass;
     pass.name = entry.name;
     pass.type = entry.type;
     pass.enabled = entry.enabled;
-    pass.runs = running_.contains(entry.name) && entry.enabled;
+    pass.runs = known.runs && entry.enabled;
     if (!pass.runs) pass.reason = reasonOf(entry);
-    const PassDescription* type = types_.at(entry.name);
+    const PassDescription* type = known.type;
     pass.known = type != nullptr;
     if (!type) return pass;
     pass.doc = type->text;
@@ -117,10 +152,10 @@ class Builder {
   }
 
   std::string reasonOf(const PassEntry& entry) const {
-    if (input_.running)
+    if (input_.running && input_.problems.empty())
       for (const graph::Skipped& skipped : input_.running->skipped)
         if (skipped.pass == entry.name) return skipped.reason;
-    return entry.enabled ? "the graph has not been compiled since it is there" : "it is disabled";
+    return entry.enabled ? "the graph can't run as it is written" : "it is disabled";
   }
 
   static ParamModel paramOf(const ParamDescription& description, const PassEntry& entry) {
@@ -175,30 +210,37 @@ class Builder {
     }
   }
 
+  /// Which outputs somebody would miss.
+  void findNeeded() {
+    for (const PassModel& pass : model_.passes) needed_.emplace_back(pass.outputs.size(), false);
+    for (const EdgeModel& edge : model_.edges) {
+      const PassModel &from = model_.passes[edge.from], &to = model_.passes[edge.to];
+      const PortDescription& output = passes_.at(from.name).type->outputs[edge.output];
+      if (to.enabled && (!output.absentWhenDisabled || to.inputs[edge.input].required))
+        needed_[edge.from][edge.output] = true;
+    }
+    for (const graph::OutputEntry& out : description_.outputs) {
+      if (!out.source || !indices_.contains(out.source->pass)) continue;
+      const size_t pass = indices_.at(out.source->pass);
+      const size_t output = indexOf(model_.passes[pass].outputs, out.source->port);
+      if (output < needed_[pass].size()) needed_[pass][output] = true;
+    }
+  }
+
   /// Why nothing could stand for an output that is read.
   std::string mustRun(const PassModel& pass) const {
-    const PassDescription* type = types_.at(pass.name);
-    if (!type) return "";
-    for (size_t o = 0; o < type->outputs.size(); ++o) {
+    const PassDescription* type = passes_.at(pass.name).type;
+    for (size_t o = 0; o < pass.outputs.size(); ++o) {
       const PortDescription& output = type->outputs[o];
-      if (!isNeeded(pass.outputs[o], output)) continue;
+      if (!needed_[indices_.at(pass.name)][o]) continue;
       if (output.passesThrough.empty())
         return fmt::format("its '{}' is read, and nothing can stand for it", output.name);
       const size_t input = indexOf(pass.inputs, output.passesThrough);
       if (input < pass.inputs.size() && pass.inputs[input].port.empty())
-        return fmt::format("its input '{}', which would stand for its '{}', is open", output.passesThrough, output.name);
+        return fmt::format("its input '{}', which would stand for its '{}', is open", output.passesThrough,
+                           output.name);
     }
     return "";
-  }
-
-  bool isNeeded(const PortModel& port, const PortDescription& output) const {
-    for (const graph::OutputEntry& out : description_.outputs)
-      if (out.source && out.source->pass + "." + out.source->port == port.port) return true;
-    for (const EdgeModel& edge : model_.edges) {
-      if (model_.passes[edge.from].outputs[edge.output].port != port.port || !model_.passes[edge.to].enabled) continue;
-      if (!output.absentWhenDisabled || model_.passes[edge.to].inputs[edge.input].required) return true;
-    }
-    return false;
   }
 
   /// Each problem to the widget that can mend it.
@@ -209,9 +251,9 @@ class Builder {
       PassModel& pass = model_.passes[at->second];
       std::vector<std::string>* list = &pass.problems;
       for (ParamModel& param : pass.params)
-        if (param.description.name == problem.param) list = &param.problems;
+        if (problem.place == "params." + param.description.name) list = &param.problems;
       for (PortModel& input : pass.inputs)
-        if (problem.param == "inputs." + input.name) list = &input.problems;
+        if (problem.place == "inputs." + input.name) list = &input.problems;
       list->push_back(problem.text);
     }
   }
@@ -219,9 +261,9 @@ class Builder {
   const ModelInput& input_;
   const Document& document_;
   const graph::Description& description_;
-  std::map<std::string, const PassDescription*, std::less<>> types_;
+  std::map<std::string, Entry, std::less<>> passes_;
   std::map<std::string, size_t, std::less<>> indices_;
-  std::set<std::string, std::less<>> running_;
+  std::vector<std::vector<bool>> needed_;  ///< by pass and output
   GraphModel model_;
 };
 
@@ -233,14 +275,12 @@ std::vector<Problem> problemsOf(const std::vector<graph::Diagnostic>& diagnostic
     Problem& problem = problems.emplace_back();
     problem.text = d.text();
     // "passes.NAME.params.PARAM", "passes.NAME.inputs.PORT", "passes.NAME.type": names of passes have no dots.
-    constexpr std::string_view kPasses = "passes.", kParams = "params.";
+    constexpr std::string_view kPasses = "passes.";
     if (!d.path.starts_with(kPasses)) continue;
     const std::string rest = d.path.substr(kPasses.size());
     const size_t dot = rest.find('.');
     problem.pass = rest.substr(0, dot);
-    if (dot == std::string::npos) continue;
-    problem.param = rest.substr(dot + 1);
-    if (problem.param.starts_with(kParams)) problem.param.erase(0, kParams.size());
+    if (dot != std::string::npos) problem.place = rest.substr(dot + 1);
   }
   return problems;
 }

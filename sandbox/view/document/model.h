@@ -16,7 +16,7 @@ namespace weir::view {
 /// Something that is wrong, and where: empty names stand for the graph as a whole.
 struct Problem {
   std::string pass;
-  std::string param;  ///< or "type", "enabled", or an input's name
+  std::string place;  ///< within the pass: "params.radius", "inputs.light", "type", "enabled"
   std::string text;
 };
 /// With the pass from each finding's path.
@@ -46,8 +46,8 @@ struct PassModel {
   bool known = true;    ///< there is such a type; else it has no parameters and ports
   bool enabled = true;  ///< as written
   bool runs = false;
-  std::string reason;      ///< why it does not
-  std::string mustRun;     ///< why it can't be disabled; empty when it can
+  std::string reason;   ///< why it does not
+  std::string mustRun;  ///< why it can't be disabled; empty when it can
   std::vector<ParamModel> params;
   std::vector<PortModel> inputs, outputs;
   std::vector<std::string> problems;  ///< of the pass itself, its type, and things that there are none of
@@ -78,7 +78,7 @@ struct ModelInput {
   const Document& document;
   const SwapContext& context;
   const graph::CompiledGraph* running = nullptr;  ///< the last that could be compiled
-  std::vector<Problem> problems;                  ///< of the last try
+  std::vector<Problem> problems;                  ///< of the last try; any: what runs is not what the document says
   std::string choicesOf;                          ///< a pass whose choices of type are wanted, or empty
 };
 GraphModel buildModel(const ModelInput& input);

@@ -54,12 +54,13 @@ class Planner {
     plan_.outputsFit = true;
     plan_.remembered.before = passText(document_.text());
     const Remembered* earlier = document_.remembered(plan_.pass, plan_.type);
+    std::string text = withMember(document_.text(), at(), "type", quoted(plan_.type));
+    text = connect(moveParams(text, earlier), earlier);
+    // Nothing happened since it was swapped the other way: it is then as it was, spaces and order too.
     if (earlier && earlier->after == plan_.remembered.before) {
       const std::string back = withMember(document_.text(), {"passes"}, plan_.pass, earlier->before);
       if (problemOf(back).empty()) return accept(back);
     }
-    std::string text = withMember(document_.text(), at(), "type", quoted(plan_.type));
-    text = connect(moveParams(text, earlier), earlier);
     if (const std::string open = openInput(text); !open.empty()) return refuse(open);
     const std::string problem = problemOf(text);
     return problem.empty() ? accept(text) : refuse(problem);
@@ -91,7 +92,8 @@ class Planner {
         if (!input.source || input.source->pass != plan_.pass) continue;
         const PortDescription* port = readerType->findInput(input.port);
         const PortDescription* output = type_->findOutput(input.source->port);
-        if (!output) return fmt::format("{} reads its '{}', which {} has not", reader.name, input.source->port, plan_.type);
+        if (!output)
+          return fmt::format("{} reads its '{}', which {} has not", reader.name, input.source->port, plan_.type);
         if (port && !compatible(output->type, port->type))
           return fmt::format("{} reads its '{}' as {}, which {} makes as {}", reader.name, output->name,
                              describe(port->type), plan_.type, describe(output->type));

@@ -21,8 +21,8 @@ struct SwapPlan {
   std::string pass, from, type;
   bool outputsFit = false;  ///< everything that is read of the pass, the type has too
   bool possible = false;
-  std::string reason;  ///< why not
-  std::string text;    ///< the document's text after the swap, where it is possible
+  std::string reason;                       ///< why not
+  std::string text;                         ///< the document's text after the swap, where it is possible
   std::vector<std::string> dropped, added;  ///< "params.radius", "inputs.light ← spatial.light", for a tooltip
   Remembered remembered;                    ///< what was dropped
 };

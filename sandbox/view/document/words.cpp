@@ -15,7 +15,8 @@ std::string countWords(const PortType& type, const std::vector<ParamModel>& para
   if (type.fixedCount != 0) return fmt::format(", {} elements", type.fixedCount);
   if (type.anyPerPixel) return ", any number a pixel";
   if (!type.perPixelFromInput.empty()) return fmt::format(", as many a pixel as '{}'", type.perPixelFromInput);
-  if (type.perPixelFromParam.empty()) return type.perPixel == 1 ? ", 1 a pixel" : fmt::format(", {} a pixel", type.perPixel);
+  if (type.perPixelFromParam.empty())
+    return type.perPixel == 1 ? ", 1 a pixel" : fmt::format(", {} a pixel", type.perPixel);
   for (const ParamModel& param : params)
     if (param.description.name == type.perPixelFromParam) return fmt::format(", {} a pixel", toText(param.value));
   return fmt::format(", '{}' a pixel", type.perPixelFromParam);
