@@ -1,9 +1,10 @@
-// Lights: one table of triangles and punctual lights (framework/scene/lights.h). A sample is a light and a point on it, two 16-bit
-// numbers, so that it is the same point wherever a reservoir carries it.
+// Lights: one table of triangles and punctual lights (framework/scene/lights.h). A sample is a light and a point on it
+// (light_place.glsl).
 #ifndef WEIR_LIGHTS
 #define WEIR_LIGHTS
 
 #include "mutants.glsl"
+#include "light_place.glsl"
 #include "random_bits.glsl"
 #include "scene.glsl"
 #include "surface.glsl"
@@ -42,19 +43,6 @@ uint pickMixed(uvec2 bits, float uniformShare) {
 }
 float mixedPdf(Light light, float uniformShare) {
   return MUTANT(43, light.pdf, mix(light.pdf, 1.0 / float(lightCount()), uniformShare));
-}
-
-// 32-bit place on a light from two uniform numbers.
-uint packPlace(vec2 u) { return uint(u.x * 65536.0) | (uint(u.y * 65536.0) << 16u); }
-
-// Barycentrics of vertices 1 and 2, uniform over the triangle: places fill the parallelogram of both edges evenly, and its far half is
-// folded onto the near one along the edge between them, across which places stay neighbours. So they are 1/65536 of a side apart
-// everywhere; by a square root (Osada et al. 2002) they would be 1/256 apart at vertex 0, and a surface close to it would see a light of
-// few points.
-vec2 placeOnTriangle(uint place) {
-  vec2 u = (vec2(place & 0xffffu, place >> 16u) + 0.5) / 65536.0;
-  u.x = MUTANT(40, pow(u.x, 0.9), u.x);
-  return u.x + u.y > 1.0 ? 1.0 - u.yx : u;
 }
 
 // The light that a triangle is, for rays that hit one; kNoLight: none.

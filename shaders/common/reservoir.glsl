@@ -6,18 +6,8 @@
 #include "mutants.glsl"
 #include "bsdf.glsl"
 #include "lights.glsl"
+#include "reservoir_bits.glsl"
 #include "visibility.glsl"
-
-// Set when a shadow ray from the reservoir's own pixel found its sample wholly visible.
-const uint kSeen = 0x80000000u;
-
-// Set by Shade when the final ray found it wholly hidden: a hint for the next frame, which no weight may depend on.
-const uint kHidden = 0x40000000u;
-
-uint lightOf(Reservoir r) { return r.light & ~(kSeen | kHidden); }
-bool wasHidden(Reservoir r) { return (r.light & kHidden) != 0u; }
-bool isSeen(Reservoir r) { return (r.light & kSeen) != 0u; }
-bool isNull(Reservoir r) { return !(r.weight > 0.0); }
 
 Reservoir emptyReservoir() { return Reservoir(0u, 0u, 0.0, 0.0); }
 Reservoir nullReservoir(float confidence) { return Reservoir(0u, 0u, 0.0, confidence); }

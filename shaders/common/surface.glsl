@@ -72,6 +72,14 @@ void finishSurface(inout Surface s) {
 #endif
 }
 
+float roughnessOf(PackedSurface p) {
+#ifdef SCENE_F90
+  return float(p.roughnessJitter >> 22u) / 1023.0;
+#else
+  return float(p.roughnessJitter >> 16u) / 65535.0;
+#endif
+}
+
 vec3 surfaceNormal(PackedSurface p) { return unpackNormal(p.shadingNormal); }
 
 Surface unpackSurface(PackedSurface p, uvec2 pixel, Camera camera, vec2 size) {
@@ -86,11 +94,9 @@ Surface unpackSurface(PackedSurface p, uvec2 pixel, Camera camera, vec2 size) {
   s.diffuse = unpackAlbedo(p.diffuse);
   s.f0 = unpackAlbedo(p.specular);
 #ifdef SCENE_F90
-  const float roughness = float(p.roughnessJitter >> 22u) / 1023.0;
   s.f90 = float((p.roughnessJitter >> 16u) & 63u) / 63.0;
-#else
-  const float roughness = float(p.roughnessJitter >> 16u) / 65535.0;
 #endif
+  const float roughness = roughnessOf(p);
   s.alpha = max(roughness * roughness, kSmallestAlpha);
   s.error = positionError(s.position, camera.origin.xyz, p.distance);
   finishSurface(s);
