@@ -4,6 +4,7 @@
 #include "view/document/edits.h"
 #include "view/document/model.h"
 
+#include <weir/core/error.h>
 #include <weir/graph/compile.h>
 #include <weir/pass/registry.h>
 
@@ -15,6 +16,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <random>
 #include <vector>
 
 #include "support/device.h"
@@ -69,7 +71,13 @@ class Desk {
     if (!requests.choicesOf.empty()) choicesOf_ = requests.choicesOf;
     if (!requests.show.empty()) state.shown = requests.show;
     if (carriesOut)
-      for (const Edit& edit : requests.edits) carryOut(document_, context_, edit);
+      for (const Edit& edit : requests.edits) {
+        try {
+          carryOut(document_, context_, edit);
+        } catch (const InputError& error) {
+          refused_ = error.what();
+        }
+      }
     if (!requests.edits.empty() || !requests.choicesOf.empty()) rebuild();
     asked_.push_back(std::move(requests));
   }
@@ -78,7 +86,7 @@ class Desk {
   SwapContext context_;
   graph::CompiledGraph running_;
   GraphModel model_;
-  std::string choicesOf_;
+  std::string choicesOf_, refused_;
   std::vector<GraphRequests> asked_;
 };
 
@@ -321,6 +329,39 @@ TEST_F(GraphPanel, SaysWhatIsWrongWhereItIs) {
   d.carriesOut = false;
   d.robot->click("graph/temporal/enabled");
   EXPECT_TRUE(d.model().find("temporal")->enabled);
+}
+
+/// Somebody who clicks, drags, scrolls and types anywhere.
+TEST_F(GraphPanel, LivesThroughAnything) {
+  std::mt19937 random(1);
+  Desk d{restir(), catalog};
+  const std::vector<std::string> texts = {"1", "-", "1e9", "abc", "%s", ".", "/", "ä"};
+  for (int i = 0; i < 1500; ++i) {
+    const std::vector<std::string> names = d.robot->marks().names();
+    ASSERT_FALSE(names.empty());
+    const std::string name = names[random() % names.size()];
+    const auto offset = [&] { return static_cast<float>(random() % 400) - 200.0f; };
+    switch (random() % 8) {
+      case 0:
+        d.robot->drag(name, {offset(), offset()}, 2);
+        break;
+      case 1:
+        d.robot->doubleClick(name);
+        break;
+      case 2:
+        d.robot->click(name, {.control = true});
+        break;
+      case 3:
+        d.robot->type(texts[random() % texts.size()]);
+        break;
+      case 4:
+        d.robot->key(static_cast<Key>(1 + random() % (static_cast<unsigned>(Key::Count) - 1)));
+        break;
+      default:
+        d.robot->click(name);
+    }
+  }
+  EXPECT_EQ(d.model().passes.size(), 6u);
 }
 
 /// Sixty passes, each reading several of the others, this frame's and last frame's: more than any window shows at once.

@@ -254,7 +254,7 @@ class Builder {
         if (problem.place == "params." + param.description.name) list = &param.problems;
       for (PortModel& input : pass.inputs)
         if (problem.place == "inputs." + input.name) list = &input.problems;
-      list->push_back(problem.text);
+      list->push_back(problem.message.empty() ? problem.text : problem.message);
     }
   }
 
@@ -274,6 +274,7 @@ std::vector<Problem> problemsOf(const std::vector<graph::Diagnostic>& diagnostic
   for (const graph::Diagnostic& d : diagnostics) {
     Problem& problem = problems.emplace_back();
     problem.text = d.text();
+    problem.message = graph::Diagnostic{"", 0, "", d.message, d.nearest}.text();
     // "passes.NAME.params.PARAM", "passes.NAME.inputs.PORT", "passes.NAME.type": names of passes have no dots.
     constexpr std::string_view kPasses = "passes.";
     if (!d.path.starts_with(kPasses)) continue;

@@ -116,7 +116,8 @@ class Box {
     list_.PushClipRect({at.x, at.y}, {end, at.y + height}, true);
     list_.AddText({at.x, y}, hovered ? palette().accent : text, pass_.name.c_str());
     const float after = at.x + ImGui::CalcTextSize(pass_.name.c_str()).x + ImGui::GetStyle().ItemSpacing.x;
-    list_.AddText({after, y}, palette().faint, shortType(pass_.type));
+    const uint32_t faint = ImGui::GetColorU32(ImGuiCol_TextDisabled, pass_.runs ? 1.0f : 0.7f);
+    list_.AddText({after, y}, faint, shortType(pass_.type));
     list_.PopClipRect();
     if (pass_.changed > 0)
       list_.AddCircleFilled({end - 5.0f * f_.ui.scale, at.y + height * 0.5f}, 3.0f, palette().changed);
