@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <compare>
 #include <map>
 #include <optional>
 #include <set>
@@ -53,7 +52,7 @@ class Builder {
   /// Where a pass stands: running ones at odd numbers, others between them.
   struct Rank {
     size_t at = 0, sequence = 0;
-    auto operator<=>(const Rank&) const = default;
+    bool operator<(const Rank& other) const { return std::pair(at, sequence) < std::pair(other.at, other.sequence); }
   };
   struct Entry {
     const PassEntry* entry = nullptr;
@@ -85,7 +84,7 @@ class Builder {
       rank(passes_.at(entry.name), 2 * running, firstReader, visited, sequence);
     std::vector<std::pair<Rank, std::string>> ranked;
     for (const auto& [name, pass] : passes_) ranked.emplace_back(*pass.rank, name);
-    std::sort(ranked.begin(), ranked.end());
+    std::sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<std::string> names;
     for (auto& [unused, name] : ranked) names.push_back(std::move(name));
     return names;
