@@ -97,6 +97,12 @@ TEST_F(Colours, LogarithmsSpreadOrdersOfMagnitudeEvenly) {
   }
   EXPECT_EQ(row[5], (Rgb{0, 0, 0}));
   EXPECT_EQ(row[6], (Rgb{0, 0, 0}));
+  row = shown(numbers, {.low = 0.001f, .high = 10.0f, .logarithmic = true, .markRange = true});
+  EXPECT_EQ(row[5], (Rgb{0, 0, 255}));
+  EXPECT_EQ(row[6], (Rgb{0, 0, 255}));
+  row = shown(numbers, {.low = -2.0f, .high = -1.0f, .logarithmic = true, .markRange = true});
+  EXPECT_EQ(row[0], (Rgb{255, 0, 0}));
+  EXPECT_EQ(row[6], (Rgb{0, 0, 255}));
   // Without a positive start: 16 octaves.
   row = shown({1.0f, 1.0f / 256.0f, 1.0f / 65536.0f}, {.logarithmic = true});
   expectNear(row[0], {255, 255, 255}, "end");

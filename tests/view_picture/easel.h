@@ -29,7 +29,8 @@ struct FilledPort {
 class Easel {
  public:
   static constexpr uint32_t kSide = 64;
-  Easel() : device_(validatedDevice()), guard_(*device_), picture_(*device_, compiler_), meter_(*device_, compiler_) {
+  explicit Easel(std::shared_ptr<gpu::Device> device = validatedDevice())
+      : device_(std::move(device)), guard_(*device_), picture_(*device_, compiler_), meter_(*device_, compiler_) {
     gpu::ImageDesc desc;
     desc.width = desc.height = kSide;
     desc.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;

@@ -16,7 +16,7 @@ namespace {
 static_assert(sizeof(RangeMeter::Cell) == 32);
 
 float nthOf(std::vector<float>& values, double share) {
-  const auto n = static_cast<size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const auto n = static_cast<size_t>(std::lround(share * static_cast<double>(values.size() - 1)));
   std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(n), values.end());
   return values[n];
 }
