@@ -19,3 +19,4 @@ void addSceneCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
 void addGraphCommand(CLI::App& app);
 void addChartCommand(CLI::App& app);
+void addViewCommand(CLI::App& app);

@@ -65,6 +65,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
   app.set_help_all_flag("--help-all", "help on every command");
   app.require_subcommand(1);
   addRenderCommand(app);
+  addViewCommand(app);
   addCompareCommand(app);
   addVerifyCommand(app);
   addBenchCommand(app);

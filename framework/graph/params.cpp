@@ -2,6 +2,7 @@
 #include <weir/core/text.h>
 #include <weir/graph/checked.h>
 #include <weir/graph/names.h>
+#include <weir/graph/params.h>
 
 #include <fmt/format.h>
 
@@ -19,6 +20,23 @@ std::string rangeText(const ParamDescription& param) {
   return text;
 }
 
+std::optional<double> asNumber(const RawValue& value) {
+  if (const auto* whole = std::get_if<int64_t>(&value)) return static_cast<double>(*whole);
+  if (const auto* real = std::get_if<double>(&value)) return *real;
+  return std::nullopt;
+}
+
+bool inRange(const ParamDescription& param, double value) {
+  return !(param.low && value < *param.low) && !(param.high && value > *param.high);
+}
+
+std::string quoted(const ParamEntry& entry) {
+  if (const auto* text = std::get_if<std::string>(&entry.value)) return fmt::format("'{}'", *text);
+  return toText(entry.value);
+}
+
+}  // namespace
+
 std::string expectedText(const ParamDescription& param) {
   switch (param.type) {
     case ParamType::Bool:
@@ -34,18 +52,7 @@ std::string expectedText(const ParamDescription& param) {
   return "";
 }
 
-std::optional<double> asNumber(const RawValue& value) {
-  if (const auto* whole = std::get_if<int64_t>(&value)) return static_cast<double>(*whole);
-  if (const auto* real = std::get_if<double>(&value)) return *real;
-  return std::nullopt;
-}
-
-bool inRange(const ParamDescription& param, double value) {
-  return !(param.low && value < *param.low) && !(param.high && value > *param.high);
-}
-
-/// The value in the parameter's own type, or nothing when it does not fit.
-std::optional<ParamValue> convert(const ParamDescription& param, const ParamEntry& entry) {
+std::optional<ParamValue> readParam(const ParamDescription& param, const ParamEntry& entry) {
   const RawValue& value = entry.value;
   switch (param.type) {
     case ParamType::Bool:
@@ -78,13 +85,6 @@ std::optional<ParamValue> convert(const ParamDescription& param, const ParamEntr
   return std::nullopt;
 }
 
-std::string quoted(const ParamEntry& entry) {
-  if (const auto* text = std::get_if<std::string>(&entry.value)) return fmt::format("'{}'", *text);
-  return toText(entry.value);
-}
-
-}  // namespace
-
 void bindParams(Node& node, Findings& findings) {
   for (const ParamDescription& param : node.type->params) node.params[param.name] = param.defaultValue;
   const auto path = [&](const ParamEntry& entry) {
@@ -99,7 +99,7 @@ void bindParams(Node& node, Findings& findings) {
                    nearestName(entry.name, names), entry.origin);
       continue;
     }
-    if (std::optional<ParamValue> value = convert(*param, entry)) {
+    if (std::optional<ParamValue> value = readParam(*param, entry)) {
       node.params[param->name] = std::move(*value);
       continue;
     }

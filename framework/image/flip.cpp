@@ -225,7 +225,8 @@ FlipExposures flipExposures(const Picture& reference) {
   return exposures;
 }
 
-std::vector<float> hdrFlip(const Picture& test, const Picture& reference, double pixelsPerDegree) {
+std::vector<float> hdrFlip(const Picture& test, const Picture& reference, double pixelsPerDegree,
+                           const std::stop_token& stop) {
   require(test, reference, pixelsPerDegree);
   const ColourSpace space;
   const FlipKernels kernels = makeFlipKernels(pixelsPerDegree);
@@ -238,10 +239,12 @@ std::vector<float> hdrFlip(const Picture& test, const Picture& reference, double
   for (size_t first = 0; first < count; first += atOnce) {
     std::vector<std::vector<float>> maps(std::min(atOnce, count - first));
     parallelFor(maps.size(), [&](size_t k) {
+      if (stop.stop_requested()) return;
       const double scale = std::exp2(exposures.start + step * static_cast<double>(first + k));
       const auto shown = [&](float v) { return Aces::map(float(std::min(scale * std::max(double(v), 0.0), 1e30))); };
       maps[k] = compare(mapped(test, shown), mapped(reference, shown), test.width, test.height, space, kernels);
     });
+    if (stop.stop_requested()) return {};
     for (const std::vector<float>& map : maps)
       for (size_t p = 0; p < largest.size(); ++p) largest[p] = std::max(largest[p], map[p]);
   }

@@ -7,6 +7,7 @@
 
 #include <weir/image/image.h>
 
+#include <stop_token>
 #include <vector>
 
 namespace weir::image {
@@ -28,7 +29,9 @@ struct FlipExposures {
 FlipExposures flipExposures(const Picture& reference);
 
 /// HDR-FLIP of two pictures of linear radiance (negative values count as 0): the maximum over exposures of FLIP after
-/// the ACES fit. Not symmetric: exposures come from the reference. Throws as ldrFlip().
-std::vector<float> hdrFlip(const Picture& test, const Picture& reference, double pixelsPerDegree);
+/// the ACES fit. Not symmetric: exposures come from the reference. Throws as ldrFlip(). When `stop` says so, it ends
+/// before the next exposure, and there is no map.
+std::vector<float> hdrFlip(const Picture& test, const Picture& reference, double pixelsPerDegree,
+                           const std::stop_token& stop = {});
 
 }  // namespace weir::image

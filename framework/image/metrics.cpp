@@ -81,7 +81,8 @@ void measureFlip(const Picture& test, const Picture& reference, const MetricOpti
   const Picture& a = replace ? cleanTest : test;
   const Picture& b = replace ? cleanReference : reference;
   const std::vector<float> map =
-      options.hdr ? hdrFlip(a, b, options.pixelsPerDegree) : ldrFlip(a, b, options.pixelsPerDegree);
+      options.hdr ? hdrFlip(a, b, options.pixelsPerDegree, options.stop) : ldrFlip(a, b, options.pixelsPerDegree);
+  if (map.empty()) return;  // stopped
   std::vector<double> counted;
   for (size_t i = 0; i < use.size(); ++i) {
     if (use[i] == Use::Counted) counted.push_back(double(map[i]));

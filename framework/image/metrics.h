@@ -8,6 +8,7 @@
 #include <weir/image/image.h>
 #include <weir/image/tiles.h>
 
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct MetricOptions {
   bool hdr = true;                ///< HDR-FLIP on linear radiance; otherwise LDR-FLIP on sRGB-encoded values
   bool flip = true;               ///< off: flipMean and flipP99 are NaN, and the rest is quick
   double pixelsPerDegree = kDefaultPixelsPerDegree;
+  std::stop_token stop = {};  ///< ends HDR-FLIP early: its figures are NaN then
 };
 
 /// Throws InputError if sizes differ or the mask counts nothing. For FLIP, which looks at neighbours too, a non-finite

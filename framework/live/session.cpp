@@ -38,8 +38,33 @@ Session::Session(const gpu::Device& device, shader::Compiler& compiler, Registry
   watch(before);
 }
 
+Session::Session(const gpu::Device& device, shader::Compiler& compiler, Registry& registry,
+                 const scene::SceneGpu& scene, const std::string& graphFile, const std::string& json,
+                 const graph::CompileOptions& compileOptions, const execute::ExecutorOptions& executorOptions)
+    : registry_(registry), graphFile_(graphFile), json_(json), options_(compileOptions) {
+  const WatchedFiles::Moment before = WatchedFiles::now();
+  executor_ = std::make_unique<execute::Executor>(device, compiler, registry, scene, compile(overrides_, options_),
+                                                  executorOptions);
+  watch(before);
+}
+
 graph::CompiledGraph Session::compile(const graph::Overrides& overrides, const graph::CompileOptions& options) const {
+  if (json_) return graph::compileText(*json_, graphFile_, overrides, registry_.catalog(), options);
   return graph::compileFile(graphFile_, overrides, registry_.catalog(), options);
+}
+
+/// Of all passes that the graph names, as far as it can be read.
+std::vector<std::string> Session::typesNamed() const {
+  std::vector<std::string> types;
+  try {
+    std::vector<graph::Diagnostic> ignored;
+    const graph::Description description =
+        json_ ? graph::parse(*json_, graphFile_, ignored) : graph::load(graphFile_, ignored);
+    for (const graph::PassEntry& pass : description.passes) types.push_back(pass.type);
+  } catch (const InputError&) {
+    // Unreadable at the moment.
+  }
+  return types;
 }
 
 /// Of the passes that run or ran, and of those that the file names: what is wrong with a plugin may be why it does not
@@ -47,12 +72,7 @@ graph::CompiledGraph Session::compile(const graph::Overrides& overrides, const g
 const std::set<std::string>& Session::plugins() {
   std::set<std::string>& names = plugins_;
   for (const graph::CompiledPass& pass : executor_->graph().passes) names.insert(pluginOf(pass.type));
-  try {
-    std::vector<graph::Diagnostic> ignored;
-    for (const graph::PassEntry& pass : graph::load(graphFile_, ignored).passes) names.insert(pluginOf(pass.type));
-  } catch (const InputError&) {
-    // Unreadable at the moment.
-  }
+  for (const std::string& type : typesNamed()) names.insert(pluginOf(type));
   return names;
 }
 
@@ -84,6 +104,16 @@ void Session::change(const graph::Overrides& overrides, const graph::CompileOpti
   overrides_ = overrides;
   options_ = compileOptions;
   watch(before);
+}
+
+void Session::edit(const std::string& json, const graph::CompileOptions& compileOptions) {
+  std::optional<std::string> before = std::exchange(json_, json);
+  try {
+    change(overrides_, compileOptions);
+  } catch (...) {
+    json_ = std::move(before);
+    throw;
+  }
 }
 
 std::vector<Event> Session::poll() {

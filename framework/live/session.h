@@ -8,6 +8,7 @@
 #include <weir/pass/registry.h>
 
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -30,7 +31,13 @@ class Session {
           const std::string& graphFile, const graph::Overrides& overrides, const graph::CompileOptions& compileOptions,
           const execute::ExecutorOptions& executorOptions);
 
+  /// The same with a graph that is edited, as by edit().
+  Session(const gpu::Device& device, shader::Compiler& compiler, Registry& registry, const scene::SceneGpu& scene,
+          const std::string& graphFile, const std::string& json, const graph::CompileOptions& compileOptions,
+          const execute::ExecutorOptions& executorOptions);
+
   execute::Executor& executor() { return *executor_; }
+  const execute::Executor& executor() const { return *executor_; }
   const graph::Overrides& overrides() const { return overrides_; }
 
   /// Looks whether files changed and follows them. Between two frames.
@@ -40,14 +47,20 @@ class Session {
   /// throws (GraphError, shader::CompileError, …) nothing has changed.
   void change(const graph::Overrides& overrides, const graph::CompileOptions& compileOptions);
 
+  /// The graph is this JSON from now on and no longer what its file says; the file stands for it in messages. Then a
+  /// change of the file is an event without an error that changes nothing: whoever edits decides. As change() otherwise.
+  void edit(const std::string& json, const graph::CompileOptions& compileOptions);
+
  private:
   graph::CompiledGraph compile(const graph::Overrides& overrides, const graph::CompileOptions& options) const;
+  std::vector<std::string> typesNamed() const;
   void watch(WatchedFiles::Moment before);
   const std::set<std::string>& plugins();
   std::vector<std::string> filesOf(const std::string& plugin) const;
 
   Registry& registry_;
   std::string graphFile_;
+  std::optional<std::string> json_;  ///< of the graph, when it is edited
   graph::Overrides overrides_;
   graph::CompileOptions options_;
   std::unique_ptr<execute::Executor> executor_;

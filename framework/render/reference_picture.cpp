@@ -5,6 +5,7 @@
 #include <weir/image/metrics.h>
 #include <weir/render/reference_picture.h>
 
+#include <functional>
 #include <vector>
 
 namespace weir::render {
@@ -27,17 +28,31 @@ void requirePicture(const graph::CompiledGraph& graph, const std::string& file, 
     throw InputError(fmt::format("output '{}' of graph {} is a buffer, not a picture", output, file));
 }
 
-image::Picture readRadiance(const std::string& file, uint32_t width, uint32_t height) {
+namespace {
+
+image::Picture readRadianceOf(const std::string& file, const std::function<void(const image::Picture&)>& check) {
   if (image::fileKind(file) == image::FileKind::Png)
     throw InputError(fmt::format("'{}' is a PNG: display values are no reference for radiance", file));
   image::Picture picture = image::readPicture(file);
-  if (picture.width != width || picture.height != height)
-    throw InputError(
-        fmt::format("'{}' is {}x{} pixels, --size {}x{}", file, picture.width, picture.height, width, height));
+  check(picture);
   if (const image::NonFinite bad = image::findNonFinite(picture); bad.pixels > 0)
     throw InputError(
         fmt::format("'{}' has {} pixels that are not finite, the first at {}, {}", file, bad.pixels, bad.x, bad.y));
   return picture;
+}
+
+}  // namespace
+
+image::Picture readRadiance(const std::string& file, uint32_t width, uint32_t height) {
+  return readRadianceOf(file, [&](const image::Picture& picture) {
+    if (picture.width != width || picture.height != height)
+      throw InputError(
+          fmt::format("'{}' is {}x{} pixels, --size {}x{}", file, picture.width, picture.height, width, height));
+  });
+}
+
+image::Picture readRadiance(const std::string& file) {
+  return readRadianceOf(file, [](const image::Picture&) {});
 }
 
 void requireSameSubject(const Stage& stage, const std::string& animation, const std::string& file,

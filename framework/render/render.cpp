@@ -6,6 +6,7 @@
 #include <weir/image/statistics.h>
 #include <weir/pass/registry.h>
 #include <weir/render/mean.h>
+#include <weir/render/picture_header.h>
 #include <weir/render/render.h>
 #include <weir/render/statistics.h>
 #include <weir/render/write_file.h>
@@ -90,28 +91,6 @@ std::string animationOf(const RenderOptions& o, const Stage& stage) {
   const uint64_t last = uint64_t{o.firstFrame} + o.frames - 1;
   const std::string label = animationLabel(stage, last + 1 - o.average, last);
   return label.empty() ? "none" : label;
-}
-
-std::map<std::string, std::string> header(const RenderOptions& o, const Stage& stage,
-                                          const graph::CompiledGraph& graph) {
-  std::map<std::string, std::string> h;
-  h["weir.scene"] = stage.sceneLabel;
-  h["weir.camera"] = stage.cameraLabel;
-  h["weir.lights"] = stage.lightsLabel;
-  h["weir.shading"] = stage.shadingLabel;
-  h["weir.animation"] = animationOf(o, stage);
-  h["weir.graph"] = fmt::format("{} ({})", graph.name, std::filesystem::path(o.graph).filename().string());
-  std::string params;
-  for (const graph::CompiledPass& pass : graph.passes) {
-    for (const auto& [name, value] : pass.params) params += fmt::format("{}.{}={} ", pass.name, name, toText(value));
-  }
-  h["weir.params"] = params;
-  h["weir.seed"] = std::to_string(o.seed);
-  h["weir.restarts"] = std::to_string(o.restarts);
-  h["weir.size"] = fmt::format("{}x{}", o.width, o.height);
-  h["weir.frames"] =
-      fmt::format("{} from {}, mean of last {}, {} restarts", o.frames, o.firstFrame, o.average, o.restarts);
-  return h;
 }
 
 RunFacts::Environment environmentFacts(const Stage& stage) {
@@ -208,7 +187,16 @@ void render(const RenderOptions& o) {
     for (execute::FrameTimes& t : executor.takeTimes()) times.push_back(std::move(t));
   }
 
-  const std::map<std::string, std::string> attributes = header(o, stage, executor.graph());
+  const PictureFacts pictured{.graphFile = o.graph,
+                              .camera = stage.cameraLabel,
+                              .lights = stage.lightsLabel,
+                              .animation = animationOf(o, stage),
+                              .seed = o.seed,
+                              .restarts = o.restarts,
+                              .frames = o.frames,
+                              .firstFrame = o.firstFrame,
+                              .average = o.average};
+  const std::map<std::string, std::string> attributes = pictureHeader(pictured, stage, executor.graph());
   auto write = [&](image::Picture picture, const std::string& file, Meaning meaning) {
     picture.attributes = attributes;
     if (file.ends_with(".png")) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <weir/core/error.h>
 #include <weir/core/text.h>
+#include <weir/render/picture_header.h>
 #include <weir/render/stage.h>
 #include <weir/scene/import.h>
 
@@ -113,10 +114,7 @@ Stage makeStage(const StageOptions& options, float aspect) {
   if (clip != nullptr && options.camera.empty() && s.scene.cameras.empty())
     bounds = scene::clipBounds(s.scene, s.prepared, *clip);
   s.camera = scene::chooseCamera(s.scene, options.camera, aspect, bounds ? &*bounds : nullptr);
-  const scene::Camera& c = s.camera;
-  s.cameraLabel = fmt::format(
-      "eye {:.9g} {:.9g} {:.9g} forward {:.9g} {:.9g} {:.9g} up {:.9g} {:.9g} {:.9g} vfov {:.9g}", c.eye.x, c.eye.y,
-      c.eye.z, c.forward.x, c.forward.y, c.forward.z, c.up.x, c.up.y, c.up.z, glm::degrees(c.verticalFov));
+  s.cameraLabel = cameraLabel(s.camera);
   return s;
 }
 

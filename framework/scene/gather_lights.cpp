@@ -1,3 +1,4 @@
+#include <weir/core/error.h>
 #include <weir/scene/emission_map.h>
 #include <weir/scene/gather_lights.h>
 #include <weir/scene/pose.h>
@@ -143,35 +144,36 @@ void gatherTriangles(const Scene& scene, const PreparedScene& prepared, Gathered
   }
 }
 
+/// Kind, radiance and shape; returns the power. `radius` of the scene.
+double setEmission(GpuLight& light, const PunctualLight& from, double radius) {
+  light.radiance = from.intensity;
+  const double power = luminance(from.intensity);
+  switch (from.kind) {
+    case LightKind::Point:
+      light.kind = static_cast<uint32_t>(GpuLightKind::Point);
+      light.b.z = from.range;
+      return power * 4.0 * kPi;
+    case LightKind::Spot: {
+      light.kind = static_cast<uint32_t>(GpuLightKind::Spot);
+      const double inner = std::cos(static_cast<double>(from.innerCone)),
+                   outer = std::cos(static_cast<double>(from.outerCone));
+      // The bound of 0.001 is KHR_lights_punctual's own.
+      light.b = {static_cast<float>(1.0 / std::max(inner - outer, 0.001)), static_cast<float>(outer), from.range};
+      // Over the solid angle, of the falloff t² with t linear in the cosine from 0 (outer) to 1 (inner).
+      return power * 2.0 * kPi * ((1.0 - inner) + (inner - outer) / 3.0);
+    }
+    default:
+      light.kind = static_cast<uint32_t>(GpuLightKind::Directional);
+      return power * kPi * radius * radius;
+  }
+}
+
 void gatherPunctual(const Scene& scene, const PreparedScene& prepared, const std::vector<char>& moving, Gathered& out) {
-  const double radius = prepared.bounds.radius();
   out.lights.reserve(out.lights.size() + scene.lights.size() + 1);  // and an environment
   out.power.reserve(out.lights.capacity());
   for (const PunctualLight& from : scene.lights) {
     GpuLight light;
-    light.radiance = from.intensity;
-    double power = luminance(from.intensity);
-    switch (from.kind) {
-      case LightKind::Point:
-        light.kind = static_cast<uint32_t>(GpuLightKind::Point);
-        light.b.z = from.range;
-        power *= 4.0 * kPi;
-        break;
-      case LightKind::Spot: {
-        light.kind = static_cast<uint32_t>(GpuLightKind::Spot);
-        const double inner = std::cos(static_cast<double>(from.innerCone)),
-                     outer = std::cos(static_cast<double>(from.outerCone));
-        // The bound of 0.001 is KHR_lights_punctual's own.
-        light.b = {static_cast<float>(1.0 / std::max(inner - outer, 0.001)), static_cast<float>(outer), from.range};
-        // Over the solid angle, of the falloff t² with t linear in the cosine from 0 (outer) to 1 (inner).
-        power *= 2.0 * kPi * ((1.0 - inner) + (inner - outer) / 3.0);
-        break;
-      }
-      case LightKind::Directional:
-        light.kind = static_cast<uint32_t>(GpuLightKind::Directional);
-        power *= kPi * radius * radius;
-        break;
-    }
+    const double power = setEmission(light, from, prepared.bounds.radius());
     setPunctual(light, from);
     if (power > 0.0 && from.node >= 0 && !moving.empty() && moving[from.node])
       out.moving.push_back(
@@ -258,6 +260,33 @@ void gatherLights(const Scene& scene, PreparedScene& prepared, const Clip* clip)
   SceneState rest = StateMaker(scene, prepared).at(restPose(scene));
   prepared.lights = std::move(rest.lights);
   prepared.aliasTable = std::move(rest.aliasTable);
+}
+
+void setLight(Scene& scene, PreparedScene& prepared, size_t index, const PunctualLight& to) {
+  PunctualLight& from = scene.lights.at(index);
+  const double radius = prepared.bounds.radius();
+  GpuLight before, after;
+  const double powerBefore = setEmission(before, from, radius), power = setEmission(after, to, radius);
+  if (!(powerBefore > 0.0)) throw InputError("light '" + from.name + "' was dark when the scene was loaded: it is in no table");
+  if (!(power > 0.0) || !std::isfinite(power)) throw InputError("light '" + from.name + "' must emit something");
+  if (after.kind != before.kind || (after.b.z > 0.0f && !prepared.traits.shapedLights))
+    throw InputError("light '" + from.name + "' keeps its kind, and a range if it had one");
+  // Dark lights are in no table, so an index there counts the others.
+  size_t at = prepared.triangleLights;
+  for (size_t i = 0; i < index; ++i) {
+    GpuLight other;
+    at += setEmission(other, scene.lights[i], radius) > 0.0 ? 1 : 0;
+  }
+  setPunctual(after, to);
+  // What was asked of the table is known by what it gives; only ratios matter.
+  std::vector<double> weights;
+  weights.reserve(prepared.lights.size());
+  for (const GpuLight& light : prepared.lights) weights.push_back(light.pdf);
+  weights[at] *= power / powerBefore;
+  if (!prepared.lightPower.empty()) prepared.lightPower[at] *= power / powerBefore;
+  prepared.lights[at] = after;
+  prepared.aliasTable = buildLightTable(weights, prepared.lights);
+  from = to;
 }
 
 }  // namespace weir::scene

@@ -1,3 +1,4 @@
+#include <weir/core/error.h>
 #include <weir/scene/upload.h>
 
 #include <algorithm>
@@ -105,6 +106,22 @@ SceneGpu::~SceneGpu() {
   for (const auto& [texture, sampler] : samplers_) vkDestroySampler(device_->handle(), sampler, nullptr);
   vkDestroyDescriptorPool(device_->handle(), pool_, nullptr);
   vkDestroyDescriptorSetLayout(device_->handle(), layout_, nullptr);
+}
+
+void SceneGpu::updateLights(const PreparedScene& prepared) {
+  if (prepared.lights.size() != lightCount)
+    throw InputError("lights can be moved and coloured, but none can come or go");
+  if (lightCount == 0) return;
+  const gpu::Buffer lights = gpu::uploadBuffer(*device_, prepared.lights, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, "lights"),
+                    alias = gpu::uploadBuffer(*device_, prepared.aliasTable, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, "alias");
+  device_->submitAndWait([&](VkCommandBuffer commands) {
+    gpu::fullBarrier(commands);
+    const VkBufferCopy lightBytes{0, 0, prepared.lights.size() * sizeof(GpuLight)};
+    vkCmdCopyBuffer(commands, lights.handle(), lights_.handle(), 1, &lightBytes);
+    const VkBufferCopy aliasBytes{0, 0, prepared.aliasTable.size() * sizeof(AliasCell)};
+    vkCmdCopyBuffer(commands, alias.handle(), alias_.handle(), 1, &aliasBytes);
+    gpu::fullBarrier(commands);
+  });
 }
 
 uint64_t SceneGpu::bytes() const {

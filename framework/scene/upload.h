@@ -81,6 +81,10 @@ class SceneGpu {
                           const MovingBindings* moving = nullptr) const;
   void freeSet(VkDescriptorSet set) const;
 
+  /// Takes over lights and alias table, of the same number as before; waits for the device. The rest of the scene is
+  /// what it was.
+  void updateLights(const PreparedScene& prepared);
+
   uint64_t bytes() const;
   uint32_t textureCount() const { return static_cast<uint32_t>(textures_.size()); }
   bool hasAcceleration() const { return withAcceleration_; }

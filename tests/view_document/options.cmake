@@ -1,0 +1,4 @@
+target_link_libraries(test_${name} PRIVATE weir_view)
+# The bundled graphs' own types, and the program that a copied command runs.
+add_dependencies(test_${name} weir weir_plugin_restir_di weir_plugin_gbuffer weir_plugin_output weir_plugin_reference
+                              weir_plugin_template weir_plugin_floor)
