@@ -147,6 +147,7 @@ void App::frame() {
   if (const std::optional<std::string> port = std::exchange(shownPort_, std::nullopt))
     guard("picture", [&] { picture_->show(*engine_, *port); });
   for (const Edit& edit : std::exchange(edits_, {})) carryOutEdit(edit);
+  if (!choicesOf_.empty()) graphChanged();
   for (const Request& request : std::exchange(requests_, {})) carryOut(request);
   followFiles(false);
   followScene();
@@ -291,8 +292,7 @@ void App::graphChanged() {
   guard("picture", [&] { picture_->follow(*engine_); });
   times_.setPasses(names);
   const SwapContext context{catalog_, engine_->size().x, engine_->size().y};
-  const std::string choices = graphModel_.choicesOf;
-  graphModel_ = buildModel({document_, context, &engine_->graph(), graphProblems_, choices});
+  graphModel_ = buildModel({document_, context, &engine_->graph(), graphProblems_, std::exchange(choicesOf_, {})});
   window_.setTitle(title());
 }
 

@@ -13,6 +13,7 @@
 #include "view/engine/engine.h"
 #include "view/engine/messages.h"
 #include "view/input/script.h"
+#include "view/panels/graph_panel.h"
 #include "view/panels/layout.h"
 #include "view/panels/overlays.h"
 #include "view/panels/requests.h"
@@ -125,7 +126,9 @@ class App {
   LayoutState layoutState_;
   Layout layout_;
   GraphModel graphModel_;
+  GraphPanelState graphState_;
   std::vector<Problem> graphProblems_;
+  std::string choicesOf_;  ///< a pass whose types the next model should list
   TimeLog times_;
   SceneModel sceneModel_;
   ScenePanelState sceneState_;

@@ -195,8 +195,17 @@ void App::drawPictureTab(Ui& ui, Requests& requests) {
 
 void App::drawGraph(Ui& ui) {
   if (layout_.graph.size().x < 1.0f) return;
-  (void)ui;
-  beginColumn("graph", layout_.graph);
+  if (beginColumn("graph", layout_.graph)) {
+    for (size_t p = 0; p < times_.passes().size(); ++p) graphState_.gpuMs[times_.passes()[p]] = times_.passFigures()[p].median;
+    if (!times_.hasGpu()) graphState_.gpuMs.clear();
+    graphState_.shown = picture_->a().port;
+    GraphRequests wanted = drawGraphPanel(ui, graphModel_, graphState_);
+    for (Edit& edit : wanted.edits) edits_.push_back(std::move(edit));
+    if (!wanted.show.empty()) shownPort_ = wanted.show;
+    if (!wanted.choicesOf.empty()) choicesOf_ = wanted.choicesOf;
+    if (wanted.save) requests_.push_back(SaveGraph{});
+    if (!wanted.saveAs.empty()) requests_.push_back(SaveGraph{wanted.saveAs});
+  }
   ImGui::End();
 }
 

@@ -160,6 +160,8 @@ void words(Ui& ui, const PicturePanelModel& model) {
   ui.marks.last("pixel");
   if (model.words == nullptr || model.words->empty()) return;
   if (!ImGui::BeginTable("probe", 2, ImGuiTableFlags_SizingFixedFit)) return;
+  ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed);
+  ImGui::TableSetupColumn("is", ImGuiTableColumnFlags_WidthStretch);
   for (const Row& row : *model.words) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
