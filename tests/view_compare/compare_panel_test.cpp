@@ -160,7 +160,16 @@ TEST(LogAxis, HoldsItsValues) {
   const LogAxis none({});
   EXPECT_EQ(none.low(), 1.0);
   EXPECT_EQ(none.high(), 10.0);
-  EXPECT_EQ(LogAxis({1e-30, 1e30}).ticks().size(), 9u) << "not all of sixty decades";
+  // From -34.8 to 34.8: every eighth decade from -35 on, whose first lies outside.
+  EXPECT_EQ(LogAxis({1e-30, 1e30}).ticks().size(), 8u) << "not all of seventy decades";
+  const LogAxis all({1e-307, std::numeric_limits<double>::max()});
+  EXPECT_GT(all.low(), 0.0);
+  EXPECT_TRUE(std::isfinite(all.high()));
+  EXPECT_LE(all.ticks().size(), 12u);
+  const LogAxis tiny({std::numeric_limits<double>::denorm_min()});
+  EXPECT_GT(tiny.low(), 0.0);
+  EXPECT_GT(tiny.high(), tiny.low());
+  EXPECT_LE(tiny.ticks().size(), 12u);
 }
 
 TEST(TrailPointWords, SayItsFigures) {

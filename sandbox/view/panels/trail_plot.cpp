@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "view/ui/style.h"
 
@@ -23,8 +24,9 @@ LogAxis::LogAxis(const std::vector<double>& values) {
   if (!any) return;
   constexpr double kShortest = 1.0 / 3.0, kRoom = 0.08;
   const double room = kRoom * (high - low) + 0.5 * std::max(kShortest - (high - low), 0.0);
-  low_ = std::pow(10.0, low - room);
-  high_ = std::pow(10.0, high + room);
+  // Room beyond what a double holds is none.
+  low_ = std::max(std::pow(10.0, low - room), std::numeric_limits<double>::min());
+  high_ = std::clamp(std::pow(10.0, high + room), 2.0 * low_, std::numeric_limits<double>::max());
 }
 
 double LogAxis::place(double value) const {
