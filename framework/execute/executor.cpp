@@ -100,7 +100,8 @@ void Executor::restart(graph::CompiledGraph graph) {
   std::set<std::string> before = std::exchange(shaderFiles_, {});
   try {
     auto next = std::make_unique<GraphRuntime>(services_, scene_, graph, options_, runtime_.get());
-    finish();  // frames in flight use what is about to go
+    finish();            // frames in flight use what is about to go,
+    device_.waitIdle();  // and so may commands of those who asked where something lies
     captureLanesTo({}, {});
     const auto name = [](const graph::CompiledPass& pass) { return pass.name; };
     const bool samePasses = std::ranges::equal(next->graph().passes, runtime_->graph().passes, {}, name, name);

@@ -56,10 +56,16 @@ TEST_F(FileReferenceTest, WhatShowsSomethingElseIsAWarning) {
   EXPECT_NE(reference.warning().find("another one"), std::string::npos) << reference.warning();
   EXPECT_EQ(reference.warning().find("pixels"), std::string::npos);
   const uint64_t view = reference.view();
+  reference.restart(shown_, 8, 6);
+  EXPECT_EQ(reference.warning().find("has moved"), std::string::npos);
+  shown_.camera.eye.x += 1.0f;
   reference.restart(shown_, 100, 50);
   EXPECT_EQ(reference.view(), view) << "it is the same picture";
   EXPECT_NE(reference.warning().find("8x6 pixels and 100x50"), std::string::npos) << reference.warning();
-  EXPECT_NE(reference.warning().find("has changed"), std::string::npos);
+  EXPECT_NE(reference.warning().find("has moved"), std::string::npos);
+  shown_.camera.eye.x -= 1.0f;
+  reference.restart(shown_, 8, 6);
+  EXPECT_EQ(reference.warning().find("has moved"), std::string::npos) << "and is back";
 }
 
 TEST_F(FileReferenceTest, BadFilesAreRefusedInWords) {

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 #include <weir/core/error.h>
-#include <weir/core/paths.h>
 #include <weir/gpu/barrier.h>
 #include <weir/image/metrics.h>
 
 #include <array>
-#include <cstdlib>
-#include <filesystem>
+
+#include "view/picture/kernels.h"
 
 namespace weir::view {
 namespace {
@@ -21,10 +20,6 @@ struct Push {
 };
 
 }  // namespace
-
-std::string viewShader(const std::string& name) {
-  return (commonShaderFolder().parent_path() / "view" / name).string();
-}
 
 Accumulator::Accumulator(const gpu::Device& device, shader::Compiler& compiler, uint32_t width, uint32_t height,
                          uint32_t sets)

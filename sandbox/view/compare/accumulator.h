@@ -7,12 +7,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
 
 namespace weir::view {
-
-/// "…/shaders/view/NAME" beside the program.
-std::string viewShader(const std::string& name);
 
 class Accumulator {
  public:

@@ -94,7 +94,9 @@ BackgroundReference::BackgroundReference(const ReferenceServices& services, cons
   startOver();
 }
 
-BackgroundReference::~BackgroundReference() = default;
+BackgroundReference::~BackgroundReference() {
+  services_.device.waitIdle();  // somebody may show its image still
+}
 
 /// With the one output: what only others need does not run.
 graph::CompiledGraph BackgroundReference::compile(uint32_t width, uint32_t height) const {
@@ -130,10 +132,10 @@ void BackgroundReference::startOver() {
   nextCopy_ = 1;
 }
 
-/// Waits for everything that was submitted here.
+/// Waits for everything that uses the accumulator: frames, copies to the host, and whoever shows its image.
 void BackgroundReference::drain() {
-  for (const std::unique_ptr<Slot>& slot : slots_) slot->submission->done(std::chrono::nanoseconds::max());
   executor_->finish();
+  services_.device.waitIdle();
 }
 
 void BackgroundReference::restart(const execute::FrameInput& shown, uint32_t width, uint32_t height) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "view/compare/reference.h"
+#include "view/picture/uploaded_picture.h"
 
 namespace weir::view {
 
@@ -17,25 +18,28 @@ class FileReference final : public Reference {
   /// or HDR that can be read, a PNG, pixels that are not finite, larger than an image of the device can be.
   FileReference(const gpu::Device& device, const std::string& file, const render::Stage& stage,
                 const std::string& animation, uint32_t width, uint32_t height);
+  ~FileReference() override;
+  FileReference(const FileReference&) = delete;
+  FileReference& operator=(const FileReference&) = delete;
 
-  /// The picture stays what it is; a size that is not its own is a warning.
+  /// The picture stays what it is; a size that is not its own is a warning, and so is another camera or state of the
+  /// scene than at the first call.
   void restart(const execute::FrameInput& shown, uint32_t width, uint32_t height) override;
   uint32_t step(double /*budgetMilliseconds*/) override { return 0; }
-  std::optional<execute::Executor::Located> image() const override { return {{&storage_, &resource_}}; }
+  std::optional<execute::Executor::Located> image() const override { return {{&image_.storage(), &image_.resource()}}; }
   std::shared_ptr<const ReferencePicture> latest() const override { return picture_; }
   uint64_t view() const override { return picture_->view; }
   std::string words() const override;
   std::string warning() const override;
 
  private:
-  void upload(const gpu::Device& device);
-
+  const gpu::Device& device_;
   std::string file_, subject_;  ///< subject: what it shows that is not shown here
   std::shared_ptr<const ReferencePicture> picture_;
-  uint32_t width_, height_;  ///< of what is shown
-  bool moved_ = false;       ///< the camera or the scene is no more as it was
-  graph::Resource resource_;
-  execute::Storage storage_;
+  uint32_t width_, height_;              ///< of what is shown
+  std::optional<scene::Camera> camera_;  ///< at the first restart
+  bool moved_ = false;
+  UploadedPicture image_;
 };
 
 }  // namespace weir::view

@@ -5,6 +5,7 @@
 #include <weir/gpu/barrier.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 
@@ -76,8 +77,11 @@ PictureRing::PictureRing(const gpu::Device& device, size_t most) : device_(devic
 PictureRing::~PictureRing() = default;
 
 PictureRing::Slot* PictureRing::freeSlot() {
-  for (const std::unique_ptr<Slot>& slot : slots_)
-    if (slot->free()) return slot.get();
+  for (const std::unique_ptr<Slot>& slot : slots_) {
+    if (!slot->free()) continue;
+    std::atomic_thread_fence(std::memory_order_acquire);  // whoever had it has read it
+    return slot.get();
+  }
   if (slots_.size() == most_) return nullptr;
   return slots_.emplace_back(std::make_unique<Slot>(device_)).get();
 }
