@@ -48,7 +48,8 @@ class Session {
   void change(const graph::Overrides& overrides, const graph::CompileOptions& compileOptions);
 
   /// The graph is this JSON from now on and no longer what its file says; the file stands for it in messages. Then a
-  /// change of the file is an event without an error that changes nothing: whoever edits decides. As change() otherwise.
+  /// change of the file is an event without an error that changes nothing: whoever edits decides. As change()
+  /// otherwise.
   void edit(const std::string& json, const graph::CompileOptions& compileOptions);
 
  private:

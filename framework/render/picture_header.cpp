@@ -13,8 +13,7 @@ std::map<std::string, std::string> pictureHeader(const PictureFacts& facts, cons
   h["weir.lights"] = facts.lights;
   h["weir.shading"] = stage.shadingLabel;
   h["weir.animation"] = facts.animation;
-  h["weir.graph"] =
-      fmt::format("{} ({})", graph.name, std::filesystem::path(facts.graphFile).filename().string());
+  h["weir.graph"] = fmt::format("{} ({})", graph.name, std::filesystem::path(facts.graphFile).filename().string());
   std::string params;
   for (const graph::CompiledPass& pass : graph.passes) {
     for (const auto& [name, value] : pass.params) params += fmt::format("{}.{}={} ", pass.name, name, toText(value));

@@ -267,7 +267,8 @@ void setLight(Scene& scene, PreparedScene& prepared, size_t index, const Punctua
   const double radius = prepared.bounds.radius();
   GpuLight before, after;
   const double powerBefore = setEmission(before, from, radius), power = setEmission(after, to, radius);
-  if (!(powerBefore > 0.0)) throw InputError("light '" + from.name + "' was dark when the scene was loaded: it is in no table");
+  if (!(powerBefore > 0.0))
+    throw InputError("light '" + from.name + "' was dark when the scene was loaded: it is in no table");
   if (!(power > 0.0) || !std::isfinite(power)) throw InputError("light '" + from.name + "' must emit something");
   if (after.kind != before.kind || (after.b.z > 0.0f && !prepared.traits.shapedLights))
     throw InputError("light '" + from.name + "' keeps its kind, and a range if it had one");

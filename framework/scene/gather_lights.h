@@ -18,8 +18,8 @@ void setPunctual(GpuLight& light, const PunctualLight& from);
 std::vector<AliasCell> buildLightTable(const std::vector<double>& power, std::vector<GpuLight>& lights);
 
 /// Another place, colour or direction for a punctual light of a scene that is prepared: in Scene::lights, and in the
-/// lights and the table made of them, whose numbers stay. InputError for a light that was dark or is to be dark, or that
-/// changes its kind or gets a range where none of the scene's had a shape.
+/// lights and the table made of them, whose numbers stay. InputError for a light that was dark or is to be dark, or
+/// that changes its kind or gets a range where none of the scene's had a shape.
 void setLight(Scene& scene, PreparedScene& prepared, size_t index, const PunctualLight& light);
 
 }  // namespace weir::scene

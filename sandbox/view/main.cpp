@@ -33,7 +33,8 @@ void addOptions(CLI::App& app, Words& words) {
   app.add_option("--frames", o.frames, "Pause after so many");
   app.add_option("--first-frame", o.firstFrame, "Number of the first frame")->capture_default_str();
   app.add_option("--seed", o.seed, "Seed of the random numbers")->capture_default_str();
-  app.add_option("--out", words.outputs, "output=file.exr or output=file.png: written when the window is closed")->allow_extra_args(false);
+  app.add_option("--out", words.outputs, "output=file.exr or output=file.png: written when the window is closed")
+      ->allow_extra_args(false);
   addOverrideOptions(app, o.overrides);
   addStageOptions(app, o.stage);
   app.add_option("--exposure", words.exposure, "EV, for every output.Tonemap");
@@ -63,7 +64,8 @@ void take(Words& words, const CLI::App& app) {
   v.framesGiven = app.count("--frames") > 0;
   if (v.framesGiven && v.render.frames == 0) throw weir::InputError("--frames must be at least 1");
   if (app.count("--exposure") > 0) v.render.exposure = words.exposure;
-  if (app.count("--ui-scale") > 0 && !(v.scale >= 0.5f && v.scale <= 4.0f)) throw weir::InputError("--ui-scale must be 0.5 … 4");
+  if (app.count("--ui-scale") > 0 && !(v.scale >= 0.5f && v.scale <= 4.0f))
+    throw weir::InputError("--ui-scale must be 0.5 … 4");
   for (const std::string& text : words.outputs) {
     const size_t equals = text.find('=');
     if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())

@@ -19,7 +19,8 @@ float inRange(float v) {
     low = 0.0;
   }
   if (has(kLogarithmic)) {
-    if (!(high > 0.0) || !(v > 0.0)) return v > high ? 1.0 : 0.0;
+    if (!(v > 0.0)) return -1.0;
+    if (!(high > 0.0)) return 2.0;
     low = low > 0.0 ? low : high * (1.0 / 65536.0);
     if (!(high > low)) return v >= high ? 1.0 : 0.0;
     return (log2(v) - log2(low)) / (log2(high) - log2(low));

@@ -2,11 +2,14 @@
 #include "view/document/document.h"
 
 #include "view/document/edits.h"
+#include "view/document/model.h"
 #include "view/document/overrides.h"
+#include "view/document/render_command.h"
 
 #include <weir/core/error.h>
 
 #include <limits>
+#include <random>
 
 #include "graphs.h"
 
@@ -254,6 +257,65 @@ TEST_F(DocumentTest, SavingElsewhereFailsWithoutTraces) {
   EXPECT_EQ(document.file(), folder.path() + "/other.json");
   EXPECT_EQ(document.description().file, document.file());
   EXPECT_FALSE(document.changed());
+}
+
+/// Whatever is asked of it, in any order, it stays a graph, and undo finds the way back.
+TEST_F(DocumentTest, AnyEditsLeaveAGraphThatUndoTakesBack) {
+  const std::vector<std::string> passes = {"gbuffer", "spatial", "shade", "no.such", "", "new", "\"", "\xff"},
+                                 words = {"radius", "color",       "a\"b",         "\\", "",
+                                          "light",  "shade.color", "x.y@previous", "ä"};
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    const auto any = [&](const std::vector<std::string>& of) { return of[random() % of.size()]; };
+    Document document = restir();
+    const std::string first = document.text();
+    for (int i = 0; i < 60; ++i) {
+      const std::string before = document.text();
+      try {
+        switch (random() % 9) {
+          case 0:
+            document.setParam(any(passes), any(words), any(words), random() % 2 == 0);
+            break;
+          case 1:
+            document.setParam(any(passes), any(words), static_cast<float>(random()) * 1e-7f, random() % 2 == 0);
+            break;
+          case 2:
+            document.resetParam(any(passes), any(words));
+            break;
+          case 3:
+            document.setEnabled(any(passes), random() % 2 == 0);
+            break;
+          case 4:
+            document.setInput(any(passes), any(words),
+                              random() % 2 == 0 ? std::optional<std::string>(any(words)) : std::nullopt);
+            break;
+          case 5:
+            document.setOutput(any(words), random() % 2 == 0 ? std::optional<std::string>(any(words)) : std::nullopt);
+            break;
+          case 6:
+            document.addPass(any(passes), any(words));
+            break;
+          case 7:
+            document.removePass(any(passes));
+            break;
+          default:
+            swapType(document, context, any(passes), any(registry.types()));
+        }
+      } catch (const InputError&) {
+        EXPECT_EQ(document.text(), before);
+      }
+      std::vector<graph::Diagnostic> found;
+      graph::parse(document.text(), "graph.json", found);
+      ASSERT_TRUE(found.empty()) << found.front().text() << "\n" << document.text();
+      // What panels and the clipboard make of it.
+      const GraphModel model = buildModel(
+          {document, context, nullptr, problemsOf(findings(document)), document.description().passes[0].name});
+      EXPECT_EQ(model.passes.size(), document.description().passes.size());
+      (void)renderCommand(document, catalog, {}, std::nullopt);
+    }
+    while (document.canUndo()) document.undo();
+    EXPECT_EQ(document.text(), first);
+  }
 }
 
 TEST_F(DocumentTest, EditsAsData) {

@@ -1,7 +1,7 @@
 // What panels show of a graph.
 #include "view/document/model.h"
 
-#include <chrono>
+#include <ctime>
 
 #include "graphs.h"
 
@@ -140,12 +140,12 @@ TEST_F(Model, LargeGraphsTakeNoQuadraticTime) {
     const Document document = Document::fromText(
         "{ \"version\": 1, \"passes\": {" + passes + "}, \"outputs\": { \"c\": \"" + last + ".color\" } }", "g");
     ModelInput input{document, context, nullptr, {{"", "", "something"}}, ""};
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();  // of this process, whatever else the machine does
     const GraphModel model = buildModel(input);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    const double took = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     EXPECT_EQ(model.passes.size(), graph::kMostPasses);
     EXPECT_EQ(model.edges.size(), graph::kMostPasses);
-    EXPECT_LT(took.count(), 1.0);
+    EXPECT_LT(took, 1.0);
   }
 }
 

@@ -35,7 +35,8 @@ Document openDocument(const ViewOptions& options, Registry& registry) {
   graph::Overrides overrides = options.render.overrides;
   if (options.render.exposure)
     for (const graph::PassEntry& pass : document.description().passes)
-      if (pass.type == "output.Tonemap") overrides.set.push_back(fmt::format("{}.exposure={}", pass.name, *options.render.exposure));
+      if (pass.type == "output.Tonemap")
+        overrides.set.push_back(fmt::format("{}.exposure={}", pass.name, *options.render.exposure));
   applyOverrides(document, overrides, registry.catalog());
   return document;
 }
@@ -60,8 +61,9 @@ App::App(const ViewOptions& options)
   const render::RenderOptions& r = options_.render;
   if (!options.script.empty()) startScript();
   scale_ = options.scale > 0.0f ? options.scale : window_.contentScale();
-  platform_ = std::make_unique<UiPlatform>(scale_, Clipboard{[this] { return window_.clipboard(); },
-                                                             [this](const std::string& text) { window_.setClipboard(text); }});
+  platform_ =
+      std::make_unique<UiPlatform>(scale_, Clipboard{[this] { return window_.clipboard(); },
+                                                     [this](const std::string& text) { window_.setClipboard(text); }});
   presenter_ = std::make_unique<Presenter>(device_, window_, pacingOf(options.pacing));
   menuHeight_ = 22.0f * scale_;
   layout_ = layoutOf(glm::vec2(window_.size()), menuHeight_, scale_, layoutState_);
@@ -82,11 +84,14 @@ App::App(const ViewOptions& options)
   engine.backend = trace::chooseBackend(r.trace, device_);
   engine_ = std::make_unique<Engine>(device_, registry_, engine, r.stage, std::move(stage));
   picture_ = std::make_unique<PictureView>(device_, compiler_);
+  comparison_ = std::make_unique<Comparison>(device_);
+  references_ = bundledReferences();
   recent_.add(r.graph);
   recent_.add(r.stage.scene);
   sceneChanged();
   graphChanged();
   if (!options.second.empty()) openSecond(options.second);
+  if (!options.reference.empty()) setReference(options.reference);
   if (options.framesGiven) engine_->runFrames(r.frames);
 }
 
@@ -147,6 +152,7 @@ void App::frame() {
   if (const std::optional<std::string> port = std::exchange(shownPort_, std::nullopt))
     guard("picture", [&] { picture_->show(*engine_, *port); });
   for (const Edit& edit : std::exchange(edits_, {})) carryOutEdit(edit);
+  if (!choicesOf_.empty()) graphChanged();
   for (const Request& request : std::exchange(requests_, {})) carryOut(request);
   followFiles(false);
   followScene();
@@ -196,21 +202,24 @@ void App::followSize() {
 
 void App::renderFrame() {
   const std::optional<scene::Camera> camera = camera_->untouched() ? std::nullopt : std::optional(camera_->camera());
-  if (!guard("frame", [&] { engine_->advance(camera); })) engine_->setPaused(true);
-  takeTimes();
+  bool isNew = false;
+  if (!guard("frame", [&] { isNew = engine_->advance(camera); })) engine_->setPaused(true);
+  compare(isNew, takeTimes());
 }
 
-void App::takeTimes() {
-  for (const execute::FrameTimes& times : engine_->executor().takeTimes()) times_.add(times);
+std::vector<execute::FrameTimes> App::takeTimes() {
+  std::vector<execute::FrameTimes> taken = engine_->executor().takeTimes();
+  for (const execute::FrameTimes& times : taken) times_.add(times);
   const double rate = frameSeconds_ > 0.0 ? 1.0 / frameSeconds_ : 0.0;
   framesPerSecond_ += 0.05f * (static_cast<float>(rate) - framesPerSecond_);
+  return taken;
 }
 
 void App::present() {
   const glm::vec2 perUnit = glm::vec2(window_.framebufferSize()) / glm::max(glm::vec2(window_.size()), 1.0f);
   const glm::vec2 low = layout_.picture.low * perUnit, size = layout_.picture.size() * perUnit;
-  const Rect rect{static_cast<int32_t>(low.x), static_cast<int32_t>(low.y), static_cast<uint32_t>(std::max(size.x, 0.0f)),
-                  static_cast<uint32_t>(std::max(size.y, 0.0f))};
+  const Rect rect{static_cast<int32_t>(low.x), static_cast<int32_t>(low.y),
+                  static_cast<uint32_t>(std::max(size.x, 0.0f)), static_cast<uint32_t>(std::max(size.y, 0.0f))};
   std::optional<PixelPlace> probe = pinned_;
   if (!probe && overPicture(mouse_)) probe = picture_->pixelAt(toCanvas(mouse_));
   guard("picture", [&] {
@@ -238,7 +247,8 @@ void App::followFiles(bool now) {
                         : event.kind == live::Event::Kind::Plugin ? "plugin"
                                                                   : "shader";
     std::string files;
-    for (const std::string& file : event.files) files += (files.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+    for (const std::string& file : event.files)
+      files += (files.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
     if (!event.error.empty()) {
       messages_.add(Severity::Error, topic, event.error);
     } else if (event.kind != live::Event::Kind::Graph) {
@@ -246,8 +256,10 @@ void App::followFiles(bool now) {
     }
     if (event.kind != live::Event::Kind::Graph || !event.error.empty() || !document_.fileDiffers()) continue;
     if (document_.changed()) {
-      messages_.add(Severity::Warning, topic,
-                    document_.file() + " was changed by somebody else. Your own changes are kept; File, Revert takes what the file says.");
+      messages_.add(
+          Severity::Warning, topic,
+          document_.file() +
+              " was changed by somebody else. Your own changes are kept; File, Revert takes what the file says.");
     } else if (guard(topic, [&] {
                  document_.reread();
                  engine_->setGraph(document_.text());
@@ -266,7 +278,13 @@ void App::followScene() {
     return;
   }
   const std::vector<std::string> warnings = loaded->stage->scene.warnings;
-  if (!guard("scene", [&] { engine_->setStage(loaded->options, std::move(loaded->stage)); })) return;
+  // What compares looks at the scene that is about to go.
+  const std::string reference = referenceFile_;
+  setReference("");
+  const bool taken = guard("scene", [&] { engine_->setStage(loaded->options, std::move(loaded->stage)); });
+  if (!reference.empty()) setReference(reference);
+  if (!taken) return;
+  messages_.clear("scene");
   recent_.add(loaded->options.scene);
   std::string all;
   for (const std::string& warning : warnings) all += (all.empty() ? "" : "\n") + warning;
@@ -291,14 +309,14 @@ void App::graphChanged() {
   guard("picture", [&] { picture_->follow(*engine_); });
   times_.setPasses(names);
   const SwapContext context{catalog_, engine_->size().x, engine_->size().y};
-  const std::string choices = graphModel_.choicesOf;
-  graphModel_ = buildModel({document_, context, &engine_->graph(), graphProblems_, choices});
+  graphModel_ = buildModel({document_, context, &engine_->graph(), graphProblems_, std::exchange(choicesOf_, {})});
   window_.setTitle(title());
 }
 
 std::string App::title() const {
   return fmt::format("{}{} - {} - weir", std::filesystem::path(document_.file()).filename().string(),
-                     document_.changed() ? "*" : "", std::filesystem::path(engine_->stageOptions().scene).filename().string());
+                     document_.changed() ? "*" : "",
+                     std::filesystem::path(engine_->stageOptions().scene).filename().string());
 }
 
 void App::writeMeasurement(const std::string& file) {

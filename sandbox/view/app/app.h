@@ -6,6 +6,7 @@
 #include "view/app/picture_view.h"
 #include "view/app/recent_files.h"
 #include "view/app/scene_loader.h"
+#include "view/compare/comparison.h"
 #include "view/document/document.h"
 #include "view/document/edits.h"
 #include "view/document/model.h"
@@ -13,6 +14,7 @@
 #include "view/engine/engine.h"
 #include "view/engine/messages.h"
 #include "view/input/script.h"
+#include "view/panels/graph_panel.h"
 #include "view/panels/layout.h"
 #include "view/panels/overlays.h"
 #include "view/panels/requests.h"
@@ -53,7 +55,7 @@ class App {
   void followFiles(bool now);
   void followScene();
   void followSize();
-  void takeTimes();
+  std::vector<execute::FrameTimes> takeTimes();
   glm::uvec2 wantedSize() const;
   /// Runs what a user asked for; what goes wrong is a message of that topic.
   template <typename Work>
@@ -81,8 +83,18 @@ class App {
   Requests drawPanels(Ui& ui);
   Requests drawSide(Ui& ui);
   void drawPictureTab(Ui& ui, Requests& requests);
+  void drawCompareTab(Ui& ui, Requests& requests);
   void drawGraph(Ui& ui);
   void drawSplitLine(Ui& ui);
+
+  // app_compare.cpp
+  /// References that come with Weir, where they are found: what they are of, and the file.
+  static std::vector<std::pair<std::string, std::string>> bundledReferences();
+  void compare(bool isNew, const std::vector<execute::FrameTimes>& times);
+  void setReference(const std::string& file);
+  void showReference();
+  void tellTurned(const Edit& edit, const std::string& before);
+  std::string valueOf(const Edit& edit) const;
 
   // app_requests.cpp
   void carryOut(const Request& request);
@@ -116,6 +128,12 @@ class App {
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<PictureView> picture_;
   std::unique_ptr<CameraControl> camera_;
+  std::unique_ptr<Comparison> comparison_;  ///< refers to the engine's scene: it goes before that
+  std::string referenceFile_;
+  ComparisonState comparisonState_;
+  int comparisonAge_ = 0;
+  bool showsReference_ = false;
+  std::vector<std::pair<std::string, std::string>> references_;  ///< that come with Weir: what of, and file
   SceneLoader loader_;
   RecentFiles recent_;
   std::unique_ptr<ScriptPlayer> script_;
@@ -125,7 +143,9 @@ class App {
   LayoutState layoutState_;
   Layout layout_;
   GraphModel graphModel_;
+  GraphPanelState graphState_;
   std::vector<Problem> graphProblems_;
+  std::string choicesOf_;  ///< a pass whose types the next model should list
   TimeLog times_;
   SceneModel sceneModel_;
   ScenePanelState sceneState_;

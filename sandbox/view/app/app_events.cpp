@@ -66,7 +66,8 @@ void App::handleMouse(const Event& event) {
         picture_->move(toCanvas(by));
         break;
       case Drag::Split:
-        picture_->splitAt = std::clamp((mouse_.x - layout_.picture.low.x) / std::max(layout_.picture.size().x, 1.0f), 0.0f, 1.0f);
+        picture_->splitAt =
+            std::clamp((mouse_.x - layout_.picture.low.x) / std::max(layout_.picture.size().x, 1.0f), 0.0f, 1.0f);
         break;
       case Drag::None:
         break;
@@ -120,7 +121,9 @@ void App::handleShortcut(const Event& event) {
   const bool control = event.modifiers.control, shift = event.modifiers.shift;
   const auto want = [&](Request request) { requests_.push_back(std::move(request)); };
   const std::string folder = std::filesystem::path(document_.file()).parent_path().string();
-  const auto ask = [&](FileDialog::For what, const std::string& start) { guard("file", [&] { files_.open(what, start); }); };
+  const auto ask = [&](FileDialog::For what, const std::string& start) {
+    guard("file", [&] { files_.open(what, start); });
+  };
   if (event.key >= Key::Digit1 && event.key <= Key::Digit9 && !control) {
     want(ChooseCamera{static_cast<int>(event.key) - static_cast<int>(Key::Digit1)});
     return;
@@ -164,7 +167,9 @@ void App::handleShortcut(const Event& event) {
         picture_->split = !picture_->split && picture_->beside();
       break;
     case Key::O:
-      if (control) ask(shift ? FileDialog::For::OpenScene : FileDialog::For::OpenGraph, shift ? engine_->stageOptions().scene : document_.file());
+      if (control)
+        ask(shift ? FileDialog::For::OpenScene : FileDialog::For::OpenGraph,
+            shift ? engine_->stageOptions().scene : document_.file());
       break;
     case Key::S:
       if (control && shift) ask(FileDialog::For::SaveGraph, document_.file());
@@ -199,7 +204,8 @@ void App::fly(double seconds) {
 void App::handleDrop(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     std::string extension = std::filesystem::path(file).extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".json")
       requests_.push_back(OpenGraph{file});
     else if (extension == ".gltf" || extension == ".glb")
@@ -207,7 +213,9 @@ void App::handleDrop(const std::vector<std::string>& files) {
     else if (extension == ".exr")
       requests_.push_back(OpenSecond{file});
     else
-      messages_.add(Severity::Error, "file", file + ": is neither a scene (.gltf, .glb) nor a graph (.json) nor a picture to compare with (.exr)");
+      messages_.add(
+          Severity::Error, "file",
+          file + ": is neither a scene (.gltf, .glb) nor a graph (.json) nor a picture to compare with (.exr)");
   }
 }
 

@@ -31,12 +31,15 @@ void App::drawFileMenu(Ui& ui, Requests& requests) {
     ui.marks.last(name);
     return is;
   };
-  const auto ask = [&](FileDialog::For what, const std::string& start) { guard("file", [&] { files_.open(what, start); }); };
+  const auto ask = [&](FileDialog::For what, const std::string& start) {
+    guard("file", [&] { files_.open(what, start); });
+  };
   if (item("Open graph…", "Ctrl+O", "open-graph")) ask(FileDialog::For::OpenGraph, document_.file());
   if (item("Open scene…", "Ctrl+Shift+O", "open-scene")) ask(FileDialog::For::OpenScene, engine_->stageOptions().scene);
   if (ImGui::BeginMenu("Recent")) {
     for (const std::string& path : recent_.all()) {
-      if (ImGui::MenuItem(path.c_str())) requests.push_back(path.ends_with(".json") ? Request(OpenGraph{path}) : Request(OpenScene{path}));
+      if (ImGui::MenuItem(path.c_str()))
+        requests.push_back(path.ends_with(".json") ? Request(OpenGraph{path}) : Request(OpenScene{path}));
       ui.marks.last("recent/" + path);
     }
     ImGui::EndMenu();
@@ -56,7 +59,8 @@ void App::drawFileMenu(Ui& ui, Requests& requests) {
 
 void App::drawTimeMenu(Ui& ui, Requests& requests) {
   const Marks::Scope scope(ui.marks, "menu/Time");
-  if (ImGui::MenuItem(engine_->paused() ? "Go on" : "Pause", "Space")) requests.push_back(SetPaused{!engine_->paused()});
+  if (ImGui::MenuItem(engine_->paused() ? "Go on" : "Pause", "Space"))
+    requests.push_back(SetPaused{!engine_->paused()});
   ui.marks.last("pause");
   if (ImGui::MenuItem("One frame", ".")) requests.push_back(StepFrame{});
   ui.marks.last("step");
@@ -82,9 +86,11 @@ Requests App::drawMenu(Ui& ui) {
   };
   menu("File", [&] { drawFileMenu(ui, requests); });
   menu("Edit", [&] {
-    if (ImGui::MenuItem(("Undo " + graphModel_.undoes).c_str(), "Ctrl+Z", false, document_.canUndo())) edits_.push_back(Undo{});
+    if (ImGui::MenuItem(("Undo " + graphModel_.undoes).c_str(), "Ctrl+Z", false, document_.canUndo()))
+      edits_.push_back(Undo{});
     ui.marks.last("menu/Edit/undo");
-    if (ImGui::MenuItem(("Redo " + graphModel_.redoes).c_str(), "Ctrl+Shift+Z", false, document_.canRedo())) edits_.push_back(Redo{});
+    if (ImGui::MenuItem(("Redo " + graphModel_.redoes).c_str(), "Ctrl+Shift+Z", false, document_.canRedo()))
+      edits_.push_back(Redo{});
     ui.marks.last("menu/Edit/redo");
   });
   menu("View", [&] {
@@ -104,8 +110,9 @@ Requests App::drawMenu(Ui& ui) {
   });
   // What the menus leave of the bar says what goes on.
   const std::string state = sequence_ ? fmt::format("writing frame {} of {}", sequence_->next, sequence_->frames)
-                            : loader_.loading() ? "loading " + std::filesystem::path(loader_.options().scene).filename().string()
-                                                : std::string();
+                            : loader_.loading()
+                                ? "loading " + std::filesystem::path(loader_.options().scene).filename().string()
+                                : std::string();
   if (!state.empty()) {
     ImGui::SameLine(0.0f, 24.0f * scale_);
     ImGui::TextColored(ImColor(palette().accent), "%s", state.c_str());
@@ -130,6 +137,7 @@ Requests App::drawSide(Ui& ui) {
       ImGui::EndTabItem();
     };
     tab("Picture", [&] { drawPictureTab(ui, requests); });
+    tab("Compare", [&] { drawCompareTab(ui, requests); });
     tab("Scene", [&] {
       const render::Stage& stage = engine_->stage();
       ScenePanelModel model;
@@ -147,7 +155,7 @@ Requests App::drawSide(Ui& ui) {
       model.generated = engine_->stageOptions().lights;
       model.lightSeed = engine_->stageOptions().lightSeed;
       ImGui::PushItemWidth(-95.0f * ui.scale);
-      requests = drawScenePanel(ui, model, sceneState_);
+      for (Request& request : drawScenePanel(ui, model, sceneState_)) requests.push_back(std::move(request));
       ImGui::PopItemWidth();
     });
     ImGui::EndTabBar();
@@ -190,13 +198,25 @@ void App::drawPictureTab(Ui& ui, Requests& requests) {
   if (result.zoom) picture_->setZoom(*result.zoom);
   if (result.renderScale) requests.push_back(SetRenderScale{*result.renderScale});
   if (result.fixedSize) requests.push_back(SetFixedSize{*result.fixedSize});
-  if (result.pacing) requests.push_back(SetPacing{static_cast<int>(presenter_->swapchain().choices()[static_cast<size_t>(*result.pacing)])});
+  if (result.pacing)
+    requests.push_back(
+        SetPacing{static_cast<int>(presenter_->swapchain().choices()[static_cast<size_t>(*result.pacing)])});
 }
 
 void App::drawGraph(Ui& ui) {
   if (layout_.graph.size().x < 1.0f) return;
-  (void)ui;
-  beginColumn("graph", layout_.graph);
+  if (beginColumn("graph", layout_.graph)) {
+    for (size_t p = 0; p < times_.passes().size(); ++p)
+      graphState_.gpuMs[times_.passes()[p]] = times_.passFigures()[p].median;
+    if (!times_.hasGpu()) graphState_.gpuMs.clear();
+    graphState_.shown = picture_->a().port;
+    GraphRequests wanted = drawGraphPanel(ui, graphModel_, graphState_);
+    for (Edit& edit : wanted.edits) edits_.push_back(std::move(edit));
+    if (!wanted.show.empty()) shownPort_ = wanted.show;
+    if (!wanted.choicesOf.empty()) choicesOf_ = wanted.choicesOf;
+    if (wanted.save) requests_.push_back(SaveGraph{});
+    if (!wanted.saveAs.empty()) requests_.push_back(SaveGraph{wanted.saveAs});
+  }
   ImGui::End();
 }
 

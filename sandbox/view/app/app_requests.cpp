@@ -26,79 +26,91 @@ struct Each : Cases... {
 }  // namespace
 
 void App::carryOut(const Request& request) {
-  std::visit(
-      Each{[this](const OpenGraph& r) { openGraph(r.file); },
-           [this](const OpenScene& r) { openScene(r.file); },
-           [this](const SaveGraph& r) { quit_ |= saveGraph(r.file) && closes_; },
-           [this](const Revert&) {
-             if (guard("file", [&] { document_.reread(); })) runDocument();
-           },
-           [this](const OpenSecond& r) { openSecond(r.file); },
-           [this](const SaveShot& r) { saveShot(r.file); },
-           [this](const SaveSequence& r) {
-             guard("sequence", [&] {
-               fs::create_directories(r.folder);
-               engine_->restart();
-               sequence_ = Sequence{r.folder, r.frames, 0};
-               engine_->step();
-             });
-           },
-           [this](const CopyCommand&) {
-             guard("command", [&] {
-               const std::string text = renderCommandText();
-               window_.setClipboard(text);
-               messages_.add(Severity::Info, "command", text);
-             });
-           },
-           [this](const Quit&) {
-             if (document_.changed())
-               asksToClose_ = true;
-             else
-               quit_ = true;
-           },
-           [this](const SetPaused& r) { engine_->setPaused(r.paused); },
-           [this](const StepFrame&) { engine_->step(); },
-           [this](const Restart&) { engine_->restart(); },
-           [this](const RunFrames& r) { engine_->runFrames(r.frames); },
-           [this](const SetCountRays& r) {
-             if (guard("graph", [&] { engine_->countRays(r.count); })) graphChanged();
-           },
-           [this](const SetPacing& r) { presenter_->swapchain().setPacing(static_cast<Pacing>(r.pacing)); },
-           [this](const SetRenderScale& r) { renderScale_ = std::clamp(r.scale, 0.1f, 2.0f); },
-           [this](const SetFixedSize& r) { fixedSize_ = r.size; },
-           [this](const ChooseCamera& r) { chooseCamera(r.index); },
-           [this](const SetFieldOfView& r) { camera_->setFieldOfView(r.degrees); },
-           [this](const SetSpeed& r) { camera_->setSpeed(r.metresPerSecond); },
-           [this](const SetLight& r) {
-             guard("light", [&] { engine_->setLight(r.index, r.light); });
-           },
-           [this](const SetSeconds& r) { engine_->setSeconds(r.seconds); },
-           [this](const SetPlays& r) { engine_->setPlays(r.plays); },
-           [this](const ChooseClip& r) {
-             render::StageOptions options = engine_->stageOptions();
-             options.animate = r.index >= 0;
-             options.clip = r.index >= 0 ? std::to_string(r.index) : "";
-             reloadStage(options);
-           },
-           [this](const SetSceneLights& r) {
-             render::StageOptions options = engine_->stageOptions();
-             options.lights = r.count;
-             options.lightSeed = r.seed;
-             options.replaceLights = r.count > 0;
-             reloadStage(options);
-           },
-           [this](const Dismiss& r) { messages_.dismiss(r.message); },
-           [this](const CancelWork&) { sequence_.reset(); }},
-      request);
+  std::visit(Each{[this](const OpenGraph& r) { openGraph(r.file); },
+                  [this](const OpenScene& r) { openScene(r.file); },
+                  [this](const SaveGraph& r) { quit_ |= saveGraph(r.file) && closes_; },
+                  [this](const Revert&) {
+                    if (guard("file", [&] { document_.reread(); })) runDocument();
+                  },
+                  [this](const OpenSecond& r) { openSecond(r.file); },
+                  [this](const SetReference& r) { setReference(r.file); },
+                  [this](const SaveTrail& r) {
+                    guard("compare", [&] {
+                      render::writeTextFile(r.file, comparison_->trail().csv());
+                      messages_.add(Severity::Info, "compare", "points → " + r.file);
+                    });
+                  },
+                  [this](const SaveShot& r) { saveShot(r.file); },
+                  [this](const SaveSequence& r) {
+                    guard("sequence", [&] {
+                      fs::create_directories(r.folder);
+                      engine_->restart();
+                      sequence_ = Sequence{r.folder, r.frames, 0};
+                      engine_->step();
+                    });
+                  },
+                  [this](const CopyCommand&) {
+                    guard("command", [&] {
+                      const std::string text = renderCommandText();
+                      window_.setClipboard(text);
+                      messages_.add(Severity::Info, "command", text);
+                    });
+                  },
+                  [this](const Quit&) {
+                    if (document_.changed())
+                      asksToClose_ = true;
+                    else
+                      quit_ = true;
+                  },
+                  [this](const SetPaused& r) { engine_->setPaused(r.paused); },
+                  [this](const StepFrame&) { engine_->step(); },
+                  [this](const Restart&) {
+                    engine_->restart();
+                    comparison_->restarted(engine_->graph());
+                  },
+                  [this](const RunFrames& r) {
+                    engine_->runFrames(r.frames);
+                    comparison_->restarted(engine_->graph());
+                  },
+                  [this](const SetCountRays& r) {
+                    if (guard("graph", [&] { engine_->countRays(r.count); })) graphChanged();
+                  },
+                  [this](const SetPacing& r) { presenter_->swapchain().setPacing(static_cast<Pacing>(r.pacing)); },
+                  [this](const SetRenderScale& r) { renderScale_ = std::clamp(r.scale, 0.1f, 2.0f); },
+                  [this](const SetFixedSize& r) { fixedSize_ = r.size; },
+                  [this](const ChooseCamera& r) { chooseCamera(r.index); },
+                  [this](const SetFieldOfView& r) { camera_->setFieldOfView(r.degrees); },
+                  [this](const SetSpeed& r) { camera_->setSpeed(r.metresPerSecond); },
+                  [this](const SetLight& r) { guard("light", [&] { engine_->setLight(r.index, r.light); }); },
+                  [this](const SetSeconds& r) { engine_->setSeconds(r.seconds); },
+                  [this](const SetPlays& r) { engine_->setPlays(r.plays); },
+                  [this](const ChooseClip& r) {
+                    render::StageOptions options = engine_->stageOptions();
+                    options.animate = r.index >= 0;
+                    options.clip = r.index >= 0 ? std::to_string(r.index) : "";
+                    reloadStage(options);
+                  },
+                  [this](const SetSceneLights& r) {
+                    render::StageOptions options = engine_->stageOptions();
+                    options.lights = r.count;
+                    options.lightSeed = r.seed;
+                    options.replaceLights = r.count > 0;
+                    reloadStage(options);
+                  },
+                  [this](const Dismiss& r) { messages_.dismiss(r.message); },
+                  [this](const CancelWork&) { sequence_.reset(); }},
+             request);
 }
 
 /// The document first, then what runs. A document that does not compile stays as it is, with what is wrong said at its
 /// passes, while the last graph that did runs on.
 void App::carryOutEdit(const Edit& edit) {
   const SwapContext context{catalog_, engine_->size().x, engine_->size().y};
+  const std::string before = valueOf(edit);
   if (!guard("edit", [&] { view::carryOut(document_, context, edit); })) return;
   messages_.clear("edit");
   runDocument();
+  if (graphProblems_.empty()) tellTurned(edit, before);
 }
 
 void App::runDocument() {
@@ -118,7 +130,10 @@ void App::runDocument() {
 void App::openGraph(const std::string& file) {
   // What is not saved stays where it is: a graph that is dropped on the window does not take it away.
   if (document_.changed()) {
-    messages_.add(Severity::Warning, "file", document_.file() + " has changes that are not saved (Ctrl+S), or undo them (Ctrl+Z), before another graph is opened");
+    messages_.add(
+        Severity::Warning, "file",
+        document_.file() +
+            " has changes that are not saved (Ctrl+S), or undo them (Ctrl+Z), before another graph is opened");
     return;
   }
   const bool opened = guard("file", [&] {
@@ -132,6 +147,7 @@ void App::openGraph(const std::string& file) {
   graphProblems_.clear();
   recent_.add(file);
   graphChanged();
+  comparison_->restarted(engine_->graph());
 }
 
 void App::openScene(const std::string& file) {
@@ -202,13 +218,17 @@ void App::writeOutput(const std::string& output, const std::string& file) {
   facts.graphFile = document_.file();
   facts.camera = render::cameraLabel(engine_->lastInput().camera);
   facts.lights = stage.lightsLabel + (engine_->lightsEdited() ? ", edited" : "");
-  if (stage.playback) facts.animation = fmt::format("{} at {:.6g} s", stage.scene.clips[stage.playback->clip].name, engine_->shownSeconds());
+  if (stage.playback)
+    facts.animation =
+        fmt::format("{} at {:.6g} s", stage.scene.clips[stage.playback->clip].name, engine_->shownSeconds());
   facts.seed = engine_->seed();
   facts.frames = engine_->frames();
   facts.firstFrame = engine_->firstFrame();
   picture.attributes = render::pictureHeader(facts, stage, executor.graph());
   if (file.ends_with(".png"))
-    image::writePng(file, picture, executor.meaning(output) == Meaning::Display ? image::Encoding::Display : image::Encoding::Radiance);
+    image::writePng(
+        file, picture,
+        executor.meaning(output) == Meaning::Display ? image::Encoding::Display : image::Encoding::Radiance);
   else if (file.ends_with(".exr"))
     image::writeExr(file, picture);
   else
@@ -290,7 +310,8 @@ std::string App::renderCommandText() {
   view.seed = engine_->seed();
   view.outputs.clear();
   for (const graph::GraphOutput& output : engine_->graph().outputs)
-    if (engine_->graph().resources[output.resource].isImage()) view.outputs.emplace_back(output.name, output.name + ".exr");
+    if (engine_->graph().resources[output.resource].isImage())
+      view.outputs.emplace_back(output.name, output.name + ".exr");
   const std::optional<scene::Camera> camera = camera_->untouched() ? std::nullopt : std::optional(camera_->camera());
   const RenderCommand command = renderCommand(document_, catalog_, view, camera);
   std::string remarks;

@@ -109,7 +109,8 @@ void PictureView::follow(Engine& engine) {
 }
 
 void PictureView::show(Engine& engine, const std::string& port) {
-  if (find(engine.graph(), port) == nullptr) throw InputError(fmt::format("there is no port '{}' now: its pass does not run", port));
+  if (find(engine.graph(), port) == nullptr)
+    throw InputError(fmt::format("there is no port '{}' now: its pass does not run", port));
   wanted_ = port;
   follow(engine);
 }
@@ -209,7 +210,9 @@ void PictureView::compose(VkCommandBuffer commands, uint32_t slot, const gpu::Im
     const execute::Executor::Located at = engine.executor().locate(a_.port);
     const scene::Camera& camera = engine.lastInput().camera;
     const glm::uvec2 size = engine.size();
-    const Shown shown{{*at.storage, *at.resource, execute::toGpu(camera, size.x, size.y), engine.stage().prepared.traits.f90}, a_.channels[a_.channel]};
+    const Shown shown{
+        {*at.storage, *at.resource, execute::toGpu(camera, size.x, size.y), engine.stage().prepared.traits.f90},
+        a_.channels[a_.channel]};
     pictures_.draw(commands, shown, a_.mode, target);
     drawn = true;
     if (measureWanted_) {
@@ -225,7 +228,8 @@ void PictureView::compose(VkCommandBuffer commands, uint32_t slot, const gpu::Im
     const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     vkCmdClearColorImage(commands, canvas.handle(), VK_IMAGE_LAYOUT_GENERAL, &ground, 1, &all);
   }
-  if (two) drawBeside(commands, canvas, {rect.x + static_cast<int32_t>(left), rect.y, rect.width - left, rect.height}, engine);
+  if (two)
+    drawBeside(commands, canvas, {rect.x + static_cast<int32_t>(left), rect.y, rect.width - left, rect.height}, engine);
 }
 
 void PictureView::drawBeside(VkCommandBuffer commands, const gpu::Image& canvas, const Rect& clip, Engine& engine) {
@@ -235,7 +239,9 @@ void PictureView::drawBeside(VkCommandBuffer commands, const gpu::Image& canvas,
   if (kind_ == Beside::Second && engine.second() != nullptr && engine.second()->runtime().recorded()) {
     execute::Executor& executor = *engine.second();
     const graph::Resource* same = find(executor.graph(), a_.port);
-    const std::string port = same != nullptr && (same->graphOutput || same->kept || !same->transient()) ? a_.port : pictureOf(executor.graph());
+    const std::string port = same != nullptr && (same->graphOutput || same->kept || !same->transient())
+                                 ? a_.port
+                                 : pictureOf(executor.graph());
     if (port.empty()) return;
     const execute::Executor::Located at = executor.locate(port);
     storage = at.storage;
@@ -258,9 +264,11 @@ void PictureView::drawBeside(VkCommandBuffer commands, const gpu::Image& canvas,
   if (channel == nullptr) channel = besideChannels_.data();
   const scene::Camera& camera = engine.lastInput().camera;
   const glm::uvec2 size = engine.size();
-  const Shown shown{{*storage, *resource, execute::toGpu(camera, size.x, size.y), engine.stage().prepared.traits.f90}, *channel};
+  const Shown shown{{*storage, *resource, execute::toGpu(camera, size.x, size.y), engine.stage().prepared.traits.f90},
+                    *channel};
   const Target target{{canvas.view(), canvas.desc().width, canvas.desc().height},
-                      sameArea(placement_, a_.extent, extentOf(*resource)), clip};
+                      sameArea(placement_, a_.extent, extentOf(*resource)),
+                      clip};
   PictureMode mode = a_.mode;
   mode.element = std::min(mode.element, std::max(resource->perPixel, 1u) - 1);
   pictures_.draw(commands, shown, mode, target);

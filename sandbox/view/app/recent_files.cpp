@@ -1,6 +1,5 @@
 #include "view/app/recent_files.h"
 
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -13,8 +12,10 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string usualFile() {
-  if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0') return std::string(state) + "/weir/recent";
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') return std::string(home) + "/.local/state/weir/recent";
+  if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0')
+    return std::string(state) + "/weir/recent";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+    return std::string(home) + "/.local/state/weir/recent";
   return {};
 }
 

@@ -8,8 +8,8 @@ namespace weir::view {
 
 class RecentFiles {
  public:
-  /// `file` keeps them; empty: $XDG_STATE_HOME/weir/recent, else ~/.local/state/weir/recent. What can't be read is taken
-  /// for empty.
+  /// `file` keeps them; empty: $XDG_STATE_HOME/weir/recent, else ~/.local/state/weir/recent. What can't be read is
+  /// taken for empty.
   explicit RecentFiles(std::string file = {});
   /// To the front; written at once, and not written where that is not possible.
   void add(const std::string& path);

@@ -82,7 +82,7 @@ class Scanner {
   }
 
   std::string keyOf(size_t begin, size_t end) const {
-    const std::string raw = text_.substr(begin + 1, end - begin - 2);
+    std::string raw = text_.substr(begin + 1, end - begin - 2);
     if (raw.find('\\') == std::string::npos) return raw;
     return nlohmann::json::parse(text_.substr(begin, end - begin)).get<std::string>();
   }

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <compare>
 #include <map>
 #include <optional>
 #include <set>
@@ -53,7 +52,7 @@ class Builder {
   /// Where a pass stands: running ones at odd numbers, others between them.
   struct Rank {
     size_t at = 0, sequence = 0;
-    auto operator<=>(const Rank&) const = default;
+    bool operator<(const Rank& other) const { return std::pair(at, sequence) < std::pair(other.at, other.sequence); }
   };
   struct Entry {
     const PassEntry* entry = nullptr;
@@ -85,7 +84,7 @@ class Builder {
       rank(passes_.at(entry.name), 2 * running, firstReader, visited, sequence);
     std::vector<std::pair<Rank, std::string>> ranked;
     for (const auto& [name, pass] : passes_) ranked.emplace_back(*pass.rank, name);
-    std::sort(ranked.begin(), ranked.end());
+    std::sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<std::string> names;
     for (auto& [unused, name] : ranked) names.push_back(std::move(name));
     return names;
@@ -254,7 +253,7 @@ class Builder {
         if (problem.place == "params." + param.description.name) list = &param.problems;
       for (PortModel& input : pass.inputs)
         if (problem.place == "inputs." + input.name) list = &input.problems;
-      list->push_back(problem.text);
+      list->push_back(problem.message.empty() ? problem.text : problem.message);
     }
   }
 
@@ -274,6 +273,7 @@ std::vector<Problem> problemsOf(const std::vector<graph::Diagnostic>& diagnostic
   for (const graph::Diagnostic& d : diagnostics) {
     Problem& problem = problems.emplace_back();
     problem.text = d.text();
+    problem.message = graph::Diagnostic{"", 0, "", d.message, d.nearest}.text();
     // "passes.NAME.params.PARAM", "passes.NAME.inputs.PORT", "passes.NAME.type": names of passes have no dots.
     constexpr std::string_view kPasses = "passes.";
     if (!d.path.starts_with(kPasses)) continue;

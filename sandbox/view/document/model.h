@@ -16,8 +16,9 @@ namespace weir::view {
 /// Something that is wrong, and where: empty names stand for the graph as a whole.
 struct Problem {
   std::string pass;
-  std::string place;  ///< within the pass: "params.radius", "inputs.light", "type", "enabled"
-  std::string text;
+  std::string place;    ///< within the pass: "params.radius", "inputs.light", "type", "enabled"
+  std::string text;     ///< complete, with its place
+  std::string message;  ///< without it, for where the place is plain; empty: the same
 };
 /// With the pass from each finding's path.
 std::vector<Problem> problemsOf(const std::vector<graph::Diagnostic>& diagnostics);

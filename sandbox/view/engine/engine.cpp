@@ -40,16 +40,21 @@ Staged Engine::upload(const render::StageOptions& options, std::unique_ptr<rende
   return staged;
 }
 
-std::unique_ptr<live::Session> Engine::makeSession(const Staged& staged, const std::string& file,
-                                                   const std::string* json,
-                                                   const graph::CompileOptions& compile) const {
+execute::ExecutorOptions Engine::executorOptions(const Staged& staged) const {
   execute::ExecutorOptions options;
   options.backend = backend_;
   options.countRays = countRays_;
   options.sceneFolder = std::filesystem::path(staged.options.scene).parent_path().string();
+  return options;
+}
+
+std::unique_ptr<live::Session> Engine::makeSession(const Staged& staged, const std::string& file,
+                                                   const std::string* json,
+                                                   const graph::CompileOptions& compile) const {
+  const execute::ExecutorOptions options = executorOptions(staged);
   if (json == nullptr)
-    return std::make_unique<live::Session>(device_, compiler_, registry_, *staged.gpu, file, graph::Overrides{}, compile,
-                                           options);
+    return std::make_unique<live::Session>(device_, compiler_, registry_, *staged.gpu, file, graph::Overrides{},
+                                           compile, options);
   return std::make_unique<live::Session>(device_, compiler_, registry_, *staged.gpu, file, *json, compile, options);
 }
 
@@ -76,7 +81,6 @@ void Engine::setGraph(const std::string& json) {
   session_->edit(json, options);
   graphJson_ = json;
   compile_ = options;
-  ++sceneRevision_;
 }
 
 void Engine::openGraph(const std::string& file, const std::string& json) {
@@ -104,7 +108,6 @@ void Engine::setSize(glm::uvec2 size) {
   compile_ = options;
   if (second_) second_->change({}, second);
   secondCompile_ = second;
-  ++sceneRevision_;
 }
 
 void Engine::keep(const std::vector<std::string>& ports) {
@@ -153,7 +156,6 @@ std::vector<live::Event> Engine::poll() {
   std::vector<live::Event> events = session_->poll();
   if (second_)
     for (live::Event& event : second_->poll()) events.push_back(std::move(event));
-  if (!events.empty()) ++sceneRevision_;
   return events;
 }
 
@@ -170,6 +172,7 @@ void Engine::setStage(const render::StageOptions& options, std::unique_ptr<rende
   staged_.gpu.reset();
   staged_ = std::move(staged);
   lightsEdited_ = false;
+  ++sceneRevision_;
   seconds_ = staged_.stage->playback ? staged_.stage->playback->start : 0.0;
   restart();
 }
@@ -189,8 +192,8 @@ bool Engine::advance(const std::optional<scene::Camera>& camera) {
   if (paused_) return false;
   const render::Stage& stage = *staged_.stage;
   const uint32_t number = firstFrame_ + frames_;
-  execute::FrameInput input = stage.playback ? staged_.player->frameAt(seconds_, number, seed_)
-                                             : staged_.player->frame(number, seed_);
+  execute::FrameInput input =
+      stage.playback ? staged_.player->frameAt(seconds_, number, seed_) : staged_.player->frame(number, seed_);
   if (camera) input.camera = *camera;
   session_->executor().frame(input);
   if (second_) second_->executor().frame(input);
@@ -221,7 +224,6 @@ void Engine::restart() {
   frames_ = 0;
   left_.reset();
   if (staged_.stage->playback) seconds_ = staged_.stage->playback->start;
-  ++sceneRevision_;
 }
 
 void Engine::runFrames(uint32_t frames) {
@@ -232,7 +234,6 @@ void Engine::runFrames(uint32_t frames) {
 
 void Engine::setSeconds(double seconds) {
   seconds_ = std::max(seconds, 0.0);
-  ++sceneRevision_;
 }
 
 }  // namespace weir::view

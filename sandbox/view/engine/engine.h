@@ -55,6 +55,8 @@ class Engine {
   void countRays(bool count);
   bool countsRays() const { return countRays_; }
   execute::Executor& executor() { return session_->executor(); }
+  /// For other executors over the same scene.
+  execute::ExecutorOptions executorOptions() const { return executorOptions(staged_); }
   const graph::CompiledGraph& graph() const { return session_->executor().graph(); }
 
   /// A second graph over the same scene, with the same frames; none when `file` is empty.
@@ -97,18 +99,18 @@ class Engine {
   uint32_t firstFrame() const { return firstFrame_; }
   uint32_t seed() const { return seed_; }
   /// Animation, where the scene has been loaded with one: seconds, and whether it goes on.
-  double seconds() const { return seconds_; }       ///< of the next frame
+  double seconds() const { return seconds_; }            ///< of the next frame
   double shownSeconds() const { return shownSeconds_; }  ///< of the last one
   void setSeconds(double seconds);
   bool plays() const { return plays_; }
   void setPlays(bool plays) { plays_ = plays; }
   /// What was shown last; for a reference that must see the same.
   execute::FrameInput lastInput() const { return lastInput_; }
-  /// Counts whatever makes other pictures of the same scene and camera: what was compared before no longer counts.
+  /// Another number for another scene or other lights.
   uint64_t sceneRevision() const { return sceneRevision_; }
 
  private:
-  using Sessions = std::pair<std::unique_ptr<live::Session>, std::unique_ptr<live::Session>>;
+  execute::ExecutorOptions executorOptions(const Staged& staged) const;
   std::unique_ptr<live::Session> makeSession(const Staged& staged, const std::string& file, const std::string* json,
                                              const graph::CompileOptions& compile) const;
   Staged upload(const render::StageOptions& options, std::unique_ptr<render::Stage> stage) const;

@@ -20,14 +20,19 @@ struct Command {
   std::string_view name;
   int fewest, most;
 };
-constexpr std::array<Command, 26> kCommands = {
-    {{"click", 1, 1},          {"click-right", 1, 1},      {"double-click", 1, 1}, {"drag", 3, 3},
-     {"look", 2, 3},           {"point", 1, 1},            {"scroll", 2, 2},       {"set", 2, 2},
-     {"text", 1, 1},           {"key", 1, 1},              {"hold", 2, 2},         {"drop", 1, kMany},
-     {"size", 2, 2},           {"minimise", 0, 0},         {"restore", 0, 0},      {"wait", 1, 1},
-     {"until-frames", 1, 1},   {"until-idle", 0, 0},       {"expect", 1, 1},       {"expect-no", 1, 1},
-     {"expect-message", 1, 1}, {"expect-no-messages", 0, 0}, {"edit", 3, 3},       {"shoot", 1, 1},
-     {"measure", 1, 1},        {"quit", 0, 0}}};
+constexpr std::array<Command, 26> kCommands = {{{"click", 1, 1},          {"click-right", 1, 1},
+                                                {"double-click", 1, 1},   {"drag", 3, 3},
+                                                {"look", 2, 3},           {"point", 1, 1},
+                                                {"scroll", 2, 2},         {"set", 2, 2},
+                                                {"text", 1, 1},           {"key", 1, 1},
+                                                {"hold", 2, 2},           {"drop", 1, kMany},
+                                                {"size", 2, 2},           {"minimise", 0, 0},
+                                                {"restore", 0, 0},        {"wait", 1, 1},
+                                                {"until-frames", 1, 1},   {"until-idle", 0, 0},
+                                                {"expect", 1, 1},         {"expect-no", 1, 1},
+                                                {"expect-message", 1, 1}, {"expect-no-messages", 0, 0},
+                                                {"edit", 3, 3},           {"shoot", 1, 1},
+                                                {"measure", 1, 1},        {"quit", 0, 0}}};
 
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& what) {
   throw InputError(fmt::format("{}:{}: {}", file, line, what));
@@ -97,14 +102,16 @@ std::vector<ScriptStep> parseScript(const std::string& text, const std::string& 
     }
     if (known == nullptr) {
       const std::string nearest = nearestName(step.command, names);
-      refuse(file, number, fmt::format("'{}' is not known{}", step.command, nearest.empty() ? "" : "; nearest is '" + nearest + "'"));
+      refuse(file, number,
+             fmt::format("'{}' is not known{}", step.command, nearest.empty() ? "" : "; nearest is '" + nearest + "'"));
     }
     const auto count = static_cast<int>(step.words.size());
     if (count < known->fewest || (known->most != kMany && count > known->most))
       refuse(file, number, fmt::format("'{}' takes {} words, not {}", step.command, known->fewest, count));
     for (const size_t at : numbersOf(step))
       if (!isNumber(step.words[at])) refuse(file, number, fmt::format("'{}' is no number", step.words[at]));
-    if (step.command == "look" && count == 3 && step.words[0] != "left" && step.words[0] != "right" && step.words[0] != "middle")
+    if (step.command == "look" && count == 3 && step.words[0] != "left" && step.words[0] != "right" &&
+        step.words[0] != "middle")
       refuse(file, number, fmt::format("'{}' is none of left, right, middle", step.words[0]));
     steps.push_back(std::move(step));
   }

@@ -6,13 +6,10 @@
 //   click-right NAME            the same with the right button
 //   double-click NAME
 //   drag NAME DX DY             press on it, move by so many units, release
-//   look DX DY                  the same on the picture, with the left button; `look right DX DY` and `middle` with others
-//   point NAME                  moves the mouse over it
-//   scroll NAME STEPS
-//   set NAME VALUE              Ctrl-click, so that a slider takes text; then the text and Enter
-//   text VALUE                  types into what has the focus
-//   key KEY                     "s", "f1", "ctrl+shift+z": pressed and released
-//   hold KEY FRAMES             held down for so many frames of the window
+//   look DX DY                  the same on the picture, with the left button; `look right DX DY` and `middle` with
+//   others point NAME                  moves the mouse over it scroll NAME STEPS set NAME VALUE Ctrl-click, so that a
+//   slider takes text; then the text and Enter text VALUE                  types into what has the focus key KEY "s",
+//   "f1", "ctrl+shift+z": pressed and released hold KEY FRAMES             held down for so many frames of the window
 //   drop FILE...                onto the window
 //   size W H                    of the window, in window coordinates
 //   minimise | restore

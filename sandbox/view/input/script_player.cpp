@@ -164,7 +164,8 @@ bool ScriptPlayer::beginInput(const ScriptStep& step) {
   const std::string& c = step.command;
   const std::vector<std::string>& w = step.words;
   glm::vec2 at(0.0f);
-  if (c == "click" || c == "click-right" || c == "double-click" || c == "drag" || c == "point" || c == "scroll" || c == "set") {
+  if (c == "click" || c == "click-right" || c == "double-click" || c == "drag" || c == "point" || c == "scroll" ||
+      c == "set") {
     if (!find(w[0], at)) return false;
   }
   if (c == "click" || c == "click-right") {
@@ -180,7 +181,8 @@ bool ScriptPlayer::beginInput(const ScriptStep& step) {
     MouseButton button = MouseButton::Left;
     if (c == "look") {
       if (!find("picture", at)) return false;
-      if (w.size() == 3) button = w[0] == "right" ? MouseButton::Right : w[0] == "middle" ? MouseButton::Middle : MouseButton::Left;
+      if (w.size() == 3)
+        button = w[0] == "right" ? MouseButton::Right : w[0] == "middle" ? MouseButton::Middle : MouseButton::Left;
     }
     const glm::vec2 by(number(w[w.size() - 2]), number(w[w.size() - 1]));
     press(at, button);

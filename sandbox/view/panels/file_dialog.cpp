@@ -30,6 +30,10 @@ Wording wordingOf(FileDialog::For purpose) {
       return {"Open a scene", "Open", {".gltf", ".glb"}};
     case FileDialog::For::OpenSecond:
       return {"Compare with a graph or a picture", "Open", {".json", ".exr", ".png"}};
+    case FileDialog::For::OpenReference:
+      return {"Measure errors against a graph or a picture", "Open", {".json", ".exr", ".hdr"}};
+    case FileDialog::For::SaveTrail:
+      return {"Save the points as CSV", "Save", {".csv"}};
     case FileDialog::For::SaveGraph:
       return {"Save the graph", "Save", {".json"}};
     case FileDialog::For::SaveShot:
@@ -47,6 +51,10 @@ Request requestFor(const FileDialog& dialog) {
       return OpenScene{dialog.path};
     case FileDialog::For::OpenSecond:
       return OpenSecond{dialog.path};
+    case FileDialog::For::OpenReference:
+      return SetReference{dialog.path};
+    case FileDialog::For::SaveTrail:
+      return SaveTrail{dialog.path};
     case FileDialog::For::SaveGraph:
       return SaveGraph{dialog.path};
     case FileDialog::For::SaveShot:
@@ -79,7 +87,8 @@ void FileDialog::enter(const std::string& folderPath) {
   fs::directory_iterator entries(folder, fs::directory_options::skip_permission_denied, error);
   const Wording wording = wordingOf(purpose);
   constexpr size_t kMost = 5000;
-  for (const fs::directory_iterator end; !error && entries != end && folders.size() + files.size() < kMost; entries.increment(error)) {
+  for (const fs::directory_iterator end; !error && entries != end && folders.size() + files.size() < kMost;
+       entries.increment(error)) {
     const std::string name = entries->path().filename().string();
     std::error_code ignored;
     if (name.starts_with(".")) continue;
@@ -99,7 +108,8 @@ Requests drawFileDialog(Ui& ui, glm::vec2 window, FileDialog& dialog) {
   const Marks::Scope scope(ui.marks, "file");
   const Wording wording = wordingOf(dialog.purpose);
   ImGui::SetNextWindowPos({window.x * 0.5f, window.y * 0.5f}, ImGuiCond_Appearing, {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({std::min(560.0f * ui.scale, window.x), std::min(420.0f * ui.scale, window.y)}, ImGuiCond_Appearing);
+  ImGui::SetNextWindowSize({std::min(560.0f * ui.scale, window.x), std::min(420.0f * ui.scale, window.y)},
+                           ImGuiCond_Appearing);
   bool open = true, done = false;
   if (ImGui::Begin(wording.title, &open, ImGuiWindowFlags_NoCollapse)) {
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
@@ -135,7 +145,9 @@ Requests drawFileDialog(Ui& ui, glm::vec2 window, FileDialog& dialog) {
       dialog.enter(entered);
       if (dialog.purpose == FileDialog::For::SaveSequence) dialog.path = dialog.folder;
     }
-    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) open = false;
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) &&
+        ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows))
+      open = false;
   }
   ImGui::End();
   if (done && !dialog.path.empty()) requests.push_back(requestFor(dialog));

@@ -17,8 +17,9 @@ Requests drawMessages(Ui& ui, const Rectangle& picture, const std::vector<Messag
   const float width = std::max(picture.size().x - 16.0f * ui.scale, 200.0f);
   ImGui::SetNextWindowSizeConstraints({width, 0.0f}, {width, std::max(picture.size().y * 0.6f, 60.0f)});
   ImGui::SetNextWindowBgAlpha(0.88f);
-  constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+  constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
+                                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
   if (ImGui::Begin("messages", nullptr, kFlags)) {
     for (const Message& message : messages) {
       ImGui::PushID(static_cast<int>(message.number));
@@ -103,7 +104,8 @@ CloseAnswer drawCloseQuestion(Ui& ui, glm::vec2 window, bool& open) {
   CloseAnswer answer = CloseAnswer::None;
   ImGui::SetNextWindowPos({window.x * 0.5f, window.y * 0.5f}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowFocus();
-  if (ImGui::Begin("Not saved", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove)) {
+  if (ImGui::Begin("Not saved", nullptr,
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove)) {
     ImGui::TextUnformatted("The graph has changes that are not saved.");
     const auto button = [&](const char* label, const char* name, CloseAnswer meaning) {
       if (ImGui::Button(label)) answer = meaning;

@@ -18,13 +18,23 @@ void drawHelp(Ui& ui, glm::vec2 window, bool& open);
 
 /// Choosing a file by its name, or walking through folders to it.
 struct FileDialog {
-  enum class For : uint8_t { None, OpenGraph, OpenScene, OpenSecond, SaveGraph, SaveShot, SaveSequence };
+  enum class For : uint8_t {
+    None,
+    OpenGraph,
+    OpenScene,
+    OpenSecond,
+    OpenReference,
+    SaveTrail,
+    SaveGraph,
+    SaveShot,
+    SaveSequence
+  };
   For purpose = For::None;
   std::string path;
-  std::string folder;                ///< whose entries are shown
+  std::string folder;  ///< whose entries are shown
   std::vector<std::string> folders, files;
-  std::string problem;               ///< why the folder can't be shown
-  int frames = 60;                   ///< of a sequence
+  std::string problem;  ///< why the folder can't be shown
+  int frames = 60;      ///< of a sequence
   void open(For what, const std::string& start);
   void enter(const std::string& folderPath);
 };

@@ -54,7 +54,8 @@ void turnMode(Ui& ui, const SideModel& side, PicturePanelResult& result) {
   const Channel& channel = (*side.channels)[side.channel];
   PictureMode mode = side.mode;
   bool changed = false;
-  const bool numbers = channel.shows == Shows::Number || channel.shows == Shows::Color || channel.shows == Shows::Direction;
+  const bool numbers =
+      channel.shows == Shows::Number || channel.shows == Shows::Color || channel.shows == Shows::Direction;
   if (channel.exposed) {
     changed |= ImGui::SliderFloat("exposure", &mode.exposure, -10.0f, 10.0f, "%.2f EV");
     ui.marks.last("exposure");
@@ -109,8 +110,10 @@ void turnMode(Ui& ui, const SideModel& side, PicturePanelResult& result) {
   }
   if (side.measured && side.measured->channel == channel.name) {
     const Measurement& m = *side.measured;
-    ImGui::TextDisabled("%.5g … %.5g%s%s", static_cast<double>(m.low), static_cast<double>(m.high), channel.unit.empty() ? "" : " ", channel.unit.c_str());
-    if (m.others > 0) ImGui::TextColored(ImColor(palette().bad), "%llu not finite", static_cast<unsigned long long>(m.others));
+    ImGui::TextDisabled("%.5g … %.5g%s%s", static_cast<double>(m.low), static_cast<double>(m.high),
+                        channel.unit.empty() ? "" : " ", channel.unit.c_str());
+    if (m.others > 0)
+      ImGui::TextColored(ImColor(palette().bad), "%llu not finite", static_cast<unsigned long long>(m.others));
   }
   if (changed) result.mode = mode;
 }
@@ -121,7 +124,8 @@ void placement(Ui& ui, const PicturePanelModel& model, PicturePanelResult& resul
   ImGui::SameLine();
   if (ImGui::SmallButton("fit")) result.zoom = 0.0f;
   ui.marks.last("fit");
-  for (const auto& [label, zoom] : std::array<std::pair<const char*, float>, 3>{{{"1:1", 1.0f}, {"4:1", 4.0f}, {"16:1", 16.0f}}}) {
+  for (const auto& [label, zoom] :
+       std::array<std::pair<const char*, float>, 3>{{{"1:1", 1.0f}, {"4:1", 4.0f}, {"16:1", 16.0f}}}) {
     ImGui::SameLine();
     if (ImGui::SmallButton(label)) result.zoom = zoom;
     ui.marks.last(label);
@@ -138,12 +142,15 @@ void placement(Ui& ui, const PicturePanelModel& model, PicturePanelResult& resul
   if (model.fixedSize.x > 0) {
     glm::ivec2 size(model.fixedSize);
     ImGui::InputInt2("pixels", &size.x, ImGuiInputTextFlags_EnterReturnsTrue);
-    if (ImGui::IsItemDeactivatedAfterEdit()) result.fixedSize = glm::uvec2(glm::clamp(size, glm::ivec2(1), glm::ivec2(16384)));
+    if (ImGui::IsItemDeactivatedAfterEdit())
+      result.fixedSize = glm::uvec2(glm::clamp(size, glm::ivec2(1), glm::ivec2(16384)));
     ui.marks.last("pixels");
   }
-  if (model.pacings.size() > 1 && ImGui::BeginCombo("display", model.pacings[static_cast<size_t>(model.pacing)].c_str())) {
+  if (model.pacings.size() > 1 &&
+      ImGui::BeginCombo("display", model.pacings[static_cast<size_t>(model.pacing)].c_str())) {
     for (size_t i = 0; i < model.pacings.size(); ++i) {
-      if (ImGui::Selectable(model.pacings[i].c_str(), static_cast<int>(i) == model.pacing)) result.pacing = static_cast<int>(i);
+      if (ImGui::Selectable(model.pacings[i].c_str(), static_cast<int>(i) == model.pacing))
+        result.pacing = static_cast<int>(i);
       ui.marks.last("display/" + model.pacings[i]);
     }
     ImGui::EndCombo();
@@ -160,6 +167,8 @@ void words(Ui& ui, const PicturePanelModel& model) {
   ui.marks.last("pixel");
   if (model.words == nullptr || model.words->empty()) return;
   if (!ImGui::BeginTable("probe", 2, ImGuiTableFlags_SizingFixedFit)) return;
+  ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthFixed);
+  ImGui::TableSetupColumn("is", ImGuiTableColumnFlags_WidthStretch);
   for (const Row& row : *model.words) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();

@@ -32,7 +32,7 @@ struct PicturePanelModel {
   float zoom = 1.0f;   ///< canvas pixels for one of the picture's
   bool fitted = true;
   float renderScale = 1.0f;
-  glm::uvec2 fixedSize{0};  ///< 0: it follows the window
+  glm::uvec2 fixedSize{0};          ///< 0: it follows the window
   std::optional<PixelPlace> pixel;  ///< under the mouse, or pinned
   bool pinned = false;
   const std::vector<Row>* words = nullptr;

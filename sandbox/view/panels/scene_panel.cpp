@@ -61,10 +61,12 @@ void cameras(Ui& ui, const ScenePanelModel& model, Requests& requests) {
     ui.marks.last(name);
   }
   float degrees = model.fieldOfView;
-  if (ImGui::SliderFloat("field of view", &degrees, 5.0f, 150.0f, "%.1f deg")) requests.push_back(SetFieldOfView{degrees});
+  if (ImGui::SliderFloat("field of view", &degrees, 5.0f, 150.0f, "%.1f deg"))
+    requests.push_back(SetFieldOfView{degrees});
   ui.marks.last("field-of-view");
   float speed = model.speed;
-  if (ImGui::DragFloat("speed", &speed, 0.01f * speed, 1e-6f, 1e6f, "%.3g m/s", ImGuiSliderFlags_Logarithmic)) requests.push_back(SetSpeed{speed});
+  if (ImGui::DragFloat("speed", &speed, 0.01f * speed, 1e-6f, 1e6f, "%.3g m/s", ImGuiSliderFlags_Logarithmic))
+    requests.push_back(SetSpeed{speed});
   ui.marks.last("speed");
   ImGui::PushTextWrapPos(0.0f);
   ImGui::TextDisabled("%s", model.camera.c_str());
@@ -124,8 +126,10 @@ void lights(Ui& ui, const ScenePanelModel& model, ScenePanelState& state, Reques
     ImGui::BeginChild("list", {0.0f, 110.0f * ui.scale}, true);
     const auto row = [&](size_t i) {
       ImGui::PushID(static_cast<int>(i));
-      const glm::vec3 c = all[i].intensity / std::max({all[i].intensity.x, all[i].intensity.y, all[i].intensity.z, 1e-30f});
-      ImGui::ColorButton("##colour", {c.x, c.y, c.z, 1.0f}, ImGuiColorEditFlags_NoTooltip, {ImGui::GetTextLineHeight(), ImGui::GetTextLineHeight()});
+      const glm::vec3 c =
+          all[i].intensity / std::max({all[i].intensity.x, all[i].intensity.y, all[i].intensity.z, 1e-30f});
+      ImGui::ColorButton("##colour", {c.x, c.y, c.z, 1.0f}, ImGuiColorEditFlags_NoTooltip,
+                         {ImGui::GetTextLineHeight(), ImGui::GetTextLineHeight()});
       ImGui::SameLine();
       if (ImGui::Selectable(labelOf(all[i], i).c_str(), i == state.light)) state.light = i;
       ui.marks.last(labelOf(all[i], i));
@@ -157,7 +161,8 @@ void lights(Ui& ui, const ScenePanelModel& model, ScenePanelState& state, Reques
   ImGui::InputInt("seed", &state.seed, 0);
   state.seed = std::max(state.seed, 0);
   ImGui::SameLine();
-  if (ImGui::Button("points")) requests.push_back(SetSceneLights{static_cast<uint32_t>(state.generate), static_cast<uint32_t>(state.seed)});
+  if (ImGui::Button("points"))
+    requests.push_back(SetSceneLights{static_cast<uint32_t>(state.generate), static_cast<uint32_t>(state.seed)});
   ui.marks.last("generate");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Loads the scene with so many point lights in place of its own");
   if (model.generated > 0) {
@@ -175,7 +180,8 @@ void time(Ui& ui, const ScenePanelModel& model, Requests& requests) {
     ui.marks.last("clip/rest");
     for (size_t i = 0; i < clips.size(); ++i) {
       ImGui::PushID(static_cast<int>(i));
-      if (ImGui::Selectable(clips[i].c_str(), static_cast<int>(i) == model.clip)) requests.push_back(ChooseClip{static_cast<int>(i)});
+      if (ImGui::Selectable(clips[i].c_str(), static_cast<int>(i) == model.clip))
+        requests.push_back(ChooseClip{static_cast<int>(i)});
       ui.marks.last("clip/" + clips[i]);
       ImGui::PopID();
     }
@@ -189,7 +195,8 @@ void time(Ui& ui, const ScenePanelModel& model, Requests& requests) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("whether the clip goes on");
   ImGui::SameLine();
   auto seconds = static_cast<float>(model.duration > 0.0 ? std::fmod(model.seconds, model.duration) : model.seconds);
-  if (ImGui::SliderFloat("time", &seconds, 0.0f, static_cast<float>(model.duration), "%.3f s")) requests.push_back(SetSeconds{static_cast<double>(seconds)});
+  if (ImGui::SliderFloat("time", &seconds, 0.0f, static_cast<float>(model.duration), "%.3f s"))
+    requests.push_back(SetSeconds{static_cast<double>(seconds)});
   ui.marks.last("time");
 }
 

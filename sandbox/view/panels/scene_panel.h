@@ -33,8 +33,8 @@ struct ScenePanelModel {
 };
 
 struct ScenePanelState {
-  size_t light = 0;       ///< chosen
-  std::string filter;     ///< of lights' names
+  size_t light = 0;    ///< chosen
+  std::string filter;  ///< of lights' names
   int generate = 500, seed = 1;
 };
 

@@ -55,7 +55,8 @@ void legend(Ui& ui, const TimeLog& log) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float side = 8.0f * ui.scale;
     if (index != ~0u)
-      ImGui::GetWindowDrawList()->AddRectFilled({at.x, at.y + 3.0f * ui.scale}, {at.x + side, at.y + 3.0f * ui.scale + side}, seriesColor(index));
+      ImGui::GetWindowDrawList()->AddRectFilled({at.x, at.y + 3.0f * ui.scale},
+                                                {at.x + side, at.y + 3.0f * ui.scale + side}, seriesColor(index));
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + side + 4.0f * ui.scale);
     ImGui::TextUnformatted(name);
     ui.marks.last(name);
@@ -80,7 +81,8 @@ void bytes(const char* what, uint64_t count) {
 
 void figures(Ui& ui, const TimePanelModel& model, Requests& requests) {
   const TimeLog& log = *model.log;
-  ImGui::Text("frame %u%s  %.1f/s", model.frames, model.paused ? " (paused)" : "", static_cast<double>(model.framesPerSecond));
+  ImGui::Text("frame %u%s  %.1f/s", model.frames, model.paused ? " (paused)" : "",
+              static_cast<double>(model.framesPerSecond));
   ui.marks.last("frame-number");
   ImGui::Text("CPU record %.3f ms", static_cast<double>(log.cpuFigures().median));
   ImGui::Text("CPU window %.3f ms", static_cast<double>(log.uiFigures().median));
@@ -93,7 +95,8 @@ void figures(Ui& ui, const TimePanelModel& model, Requests& requests) {
     ImGui::Text("%.3f M", static_cast<double>(model.rays) * 1e-6);
   }
   bytes("transient", model.transientBytes);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%.1f MB more if nothing shared memory", static_cast<double>(model.savedBytes) * 1e-6);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("%.1f MB more if nothing shared memory", static_cast<double>(model.savedBytes) * 1e-6);
   bytes("history", model.historyBytes);
   bytes("scene", model.sceneBytes);
   ImGui::TextDisabled("%s", model.device.c_str());
@@ -107,8 +110,9 @@ Requests drawTimePanel(Ui& ui, const Rectangle& where, const TimePanelModel& mod
   const Marks::Scope scope(ui.marks, "times");
   ImGui::SetNextWindowPos({where.low.x, where.low.y});
   ImGui::SetNextWindowSize({where.size().x, where.size().y});
-  constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                      ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
+  constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                                      ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("times", nullptr, kFixed)) {
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const float left = 165.0f * ui.scale, right = std::min(285.0f * ui.scale, room.x * 0.45f);
@@ -122,7 +126,8 @@ Requests drawTimePanel(Ui& ui, const Rectangle& where, const TimePanelModel& mod
     ImGui::Dummy({width, room.y});
     ui.marks.last("plot");
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s", model.log->hasGpu() ? "GPU milliseconds of the last 300 frames, by pass" : "This device has no timers");
+      ImGui::SetTooltip(
+          "%s", model.log->hasGpu() ? "GPU milliseconds of the last 300 frames, by pass" : "This device has no timers");
     ImGui::SameLine();
     ImGui::BeginChild("legend", {0.0f, 0.0f});
     legend(ui, *model.log);

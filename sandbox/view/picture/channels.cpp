@@ -48,10 +48,7 @@ std::vector<Channel> vectorChannels(Meaning meaning) {
     all.back().low = -8.0f;
     all.back().high = 8.0f;
   }
-  for (Channel& c : all) {
-    c.exposed = c.encoded = false;
-    c.guessed = true;
-  }
+  for (Channel& c : all) c.exposed = c.encoded = false;
   return all;
 }
 
@@ -124,7 +121,8 @@ std::vector<Channel> fieldChannels(const Layout& layout) {
     }
   }
   // A layout of fields that nobody knows is words still.
-  for (uint32_t w = 0; all.empty() && w < layout.stride / 4; ++w) addIntegers(all, fmt::format("word {}", w), false, w);
+  const uint32_t bare = all.empty() ? layout.stride / 4 : 0;
+  for (uint32_t w = 0; w < bare; ++w) addIntegers(all, fmt::format("word {}", w), false, w);
   for (Channel& c : all) c.reading = Reading::Words;
   return all;
 }

@@ -68,7 +68,7 @@ std::vector<Channel> reservoirChannels() {
        .shows = Shows::Label,
        .code = 1},
       {.name = "W",
-       .doc = "Unbiased contribution weight: per m\u00b2 on triangles; 0: no sample",
+       .doc = "Unbiased contribution weight, in m\u00b2 on triangles; 0: no sample",
        .guessed = true,
        .logarithmic = true,
        .code = 3},

@@ -16,7 +16,7 @@ namespace {
 static_assert(sizeof(RangeMeter::Cell) == 32);
 
 float nthOf(std::vector<float>& values, double share) {
-  const auto n = static_cast<size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const auto n = static_cast<size_t>(std::lround(share * static_cast<double>(values.size() - 1)));
   std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(n), values.end());
   return values[n];
 }
@@ -94,6 +94,8 @@ std::optional<Measurement> RangeMeter::collect(uint32_t slotIndex) {
   if (values.empty()) return m;
   m.percentile1 = nthOf(values, 0.01);
   m.percentile99 = nthOf(values, 0.99);
+  std::erase_if(values, [](float v) { return !(v > 0.0f); });
+  if (!values.empty()) m.positive1 = nthOf(values, 0.01);
   return m;
 }
 
@@ -108,8 +110,8 @@ Range rangeFor(const Measurement& measured, const Channel& channel, const Pictur
     const float near = r.low > 0.0f ? r.low : r.high < 0.0f ? -r.high : 0.0f;
     r = {mode.sign == Sign::Split ? 0.0f : near, far};
   }
-  // The logarithm wants a positive start: what is small against the end, where the values reach zero.
-  if (mode.logarithmic && r.low <= 0.0f) r.low = 0.0f;
+  // Logarithms begin at what is positive: zeros say nothing of how small the others get.
+  if (mode.logarithmic && r.low <= 0.0f) r.low = scaled(measured.positive1);
   if (!(r.high > r.low)) {  // one value everywhere: in the middle of twice its size
     const float around = r.low != 0.0f ? 0.5f * std::abs(r.low) : 1.0f;
     r = {r.low - around, std::min(r.high + around, kLargest)};

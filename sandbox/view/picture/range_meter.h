@@ -17,10 +17,12 @@ struct Measurement {
   uint64_t finite = 0, others = 0;                ///< pixels with finite values, and with NaN or infinities
   float low = 0.0f, high = 0.0f;                  ///< smallest and largest finite value, exact
   float percentile1 = 0.0f, percentile99 = 0.0f;  ///< of one value in each of at most 128 x 128 cells
+  float positive1 = 0.0f;  ///< the 1st percentile of the positive ones among those; 0: there are none
 };
 
 /// The range that shows a measured channel in a mode: `robust` from the 1st to the 99th percentile, else all of it.
-/// With exposure and sign as the mode has them, and never empty. The mode's own range when nothing finite was found.
+/// With exposure, sign and logarithm as the mode has them, and never empty. The mode's own range when nothing finite
+/// was found.
 struct Range {
   float low = 0.0f, high = 1.0f;
 };

@@ -4,8 +4,8 @@
 #include <weir/gpu/barrier.h>
 
 // Declares Vulkan's functions as its own header does: with our names for the entry points, which the types don't mind.
-#include <imgui.h>
 #include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
 
 #include <algorithm>
 #include <limits>
@@ -131,7 +131,8 @@ void Presenter::makeUi() {
   info.CheckVkResultFn = [](VkResult result) {
     if (result < VK_SUCCESS) gpu::check(result, "drawing the window's panels");
   };
-  if (!ImGui_ImplVulkan_Init(&info, renderPass_)) throw RuntimeError("the window's panels can't be drawn on this device");
+  if (!ImGui_ImplVulkan_Init(&info, renderPass_))
+    throw RuntimeError("the window's panels can't be drawn on this device");
   uiMade_ = true;
   renewFonts();
 }
@@ -176,7 +177,8 @@ void Presenter::makeFramebuffers() {
 
 bool Presenter::show(const Compose& compose, ImDrawData* ui) {
   Slot& slot = slots_[slot_];
-  gpu::check(vkWaitForFences(device_.handle(), 1, &slot.done, VK_TRUE, std::numeric_limits<uint64_t>::max()), "vkWaitForFences");
+  gpu::check(vkWaitForFences(device_.handle(), 1, &slot.done, VK_TRUE, std::numeric_limits<uint64_t>::max()),
+             "vkWaitForFences");
   const std::optional<uint32_t> image = swapchain_.acquire(slot.ready);
   if (!image) return false;
   if (generation_ != swapchain_.generation()) makeFramebuffers();

@@ -25,8 +25,8 @@ class Presenter {
   Presenter& operator=(const Presenter&) = delete;
 
   /// Records what is shown below ImGui: canvas is an RGBA8 storage image of the framebuffer's size in
-  /// VK_IMAGE_LAYOUT_GENERAL with undefined content. Everything earlier in the queue is waited for, and everything later
-  /// waits for it. What was recorded with the same slot before is done.
+  /// VK_IMAGE_LAYOUT_GENERAL with undefined content. Everything earlier in the queue is waited for, and everything
+  /// later waits for it. What was recorded with the same slot before is done.
   using Compose = std::function<void(VkCommandBuffer commands, uint32_t slot, const gpu::Image& canvas)>;
   /// Composes, draws and presents. False when there was nothing to show on: a minimised window.
   bool show(const Compose& compose, ImDrawData* ui);

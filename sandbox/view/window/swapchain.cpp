@@ -107,7 +107,8 @@ bool Swapchain::make() {
 
   VkSwapchainCreateInfoKHR info{VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
   info.surface = surface_;
-  info.minImageCount = can.maxImageCount > 0 ? std::min(can.minImageCount + 1, can.maxImageCount) : can.minImageCount + 1;
+  info.minImageCount =
+      can.maxImageCount > 0 ? std::min(can.minImageCount + 1, can.maxImageCount) : can.minImageCount + 1;
   info.imageFormat = format_.format;
   info.imageColorSpace = format_.colorSpace;
   info.imageExtent = extent_;
@@ -163,7 +164,8 @@ std::optional<uint32_t> Swapchain::acquire(VkSemaphore ready) {
   for (int attempt = 0; attempt < 3; ++attempt) {
     if ((stale_ || lost_ || chain_ == VK_NULL_HANDLE) && !make()) return std::nullopt;
     uint32_t index = 0;
-    const VkResult result = vkAcquireNextImageKHR(device_.handle(), chain_, std::numeric_limits<uint64_t>::max(), ready, VK_NULL_HANDLE, &index);
+    const VkResult result = vkAcquireNextImageKHR(device_.handle(), chain_, std::numeric_limits<uint64_t>::max(), ready,
+                                                  VK_NULL_HANDLE, &index);
     if (result == VK_SUCCESS || result == VK_SUBOPTIMAL_KHR) {
       stale_ = result == VK_SUBOPTIMAL_KHR;
       return index;

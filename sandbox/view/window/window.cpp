@@ -66,7 +66,8 @@ Modifiers modifiersOf(int mods) {
 
 WindowSystem::WindowSystem() {
   if (glfwInit() == GLFW_FALSE)
-    throw RuntimeError("There can be no window: " + lastError() + ". `weir render` needs none; xvfb-run gives a display to a machine without one.");
+    throw RuntimeError("There can be no window: " + lastError() +
+                       ". `weir render` needs none; xvfb-run gives a display to a machine without one.");
 }
 
 WindowSystem::~WindowSystem() {
@@ -90,8 +91,9 @@ Window::Window(const WindowSystem&, const std::string& title, glm::ivec2 size) {
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   handle_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
   if (handle_ == nullptr) throw RuntimeError("There can be no window: " + lastError());
-  constexpr std::array<int, 8> kShapes = {GLFW_ARROW_CURSOR,   GLFW_IBEAM_CURSOR,   GLFW_ARROW_CURSOR, GLFW_VRESIZE_CURSOR,
-                                          GLFW_HRESIZE_CURSOR, GLFW_ARROW_CURSOR, GLFW_ARROW_CURSOR, GLFW_HAND_CURSOR};
+  constexpr std::array<int, 8> kShapes = {GLFW_ARROW_CURSOR,   GLFW_IBEAM_CURSOR,   GLFW_ARROW_CURSOR,
+                                          GLFW_VRESIZE_CURSOR, GLFW_HRESIZE_CURSOR, GLFW_ARROW_CURSOR,
+                                          GLFW_ARROW_CURSOR,   GLFW_HAND_CURSOR};
   for (const int shape : kShapes) cursors_.push_back(glfwCreateStandardCursor(shape));
   glfwSetWindowUserPointer(handle_, this);
   glfwSetWindowSizeLimits(handle_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
@@ -187,7 +189,8 @@ float Window::contentScale() const {
   glfwGetWindowContentScale(handle_, &scale.x, &scale.y);
   // Where the framebuffer is larger than the window already, ImGui's own framebuffer scale sees to it.
   const glm::ivec2 window = size(), framebuffer = framebufferSize();
-  const float drawn = window.x > 0 && framebuffer.x > 0 ? static_cast<float>(framebuffer.x) / static_cast<float>(window.x) : 1.0f;
+  const float drawn =
+      window.x > 0 && framebuffer.x > 0 ? static_cast<float>(framebuffer.x) / static_cast<float>(window.x) : 1.0f;
   return std::clamp(scale.x / drawn, 0.5f, 4.0f);
 }
 
@@ -203,7 +206,9 @@ void Window::setCursor(int shape) {
   if (shape == cursor_) return;
   cursor_ = shape;
   glfwSetInputMode(handle_, GLFW_CURSOR, shape < 0 ? GLFW_CURSOR_HIDDEN : GLFW_CURSOR_NORMAL);
-  if (shape >= 0) glfwSetCursor(handle_, static_cast<size_t>(shape) < cursors_.size() ? cursors_[static_cast<size_t>(shape)] : cursors_.front());
+  if (shape >= 0)
+    glfwSetCursor(handle_, static_cast<size_t>(shape) < cursors_.size() ? cursors_[static_cast<size_t>(shape)]
+                                                                        : cursors_.front());
 }
 
 void Window::minimise(bool minimised) {
