@@ -37,7 +37,7 @@ std::shared_ptr<ReferencePicture> referenceOf(image::Picture picture) {
 
 template <typename Holds>
 bool eventually(const Holds& holds) {
-  for (int i = 0; i < 10000; ++i) {
+  for (int i = 0; i < 60000; ++i) {
     if (holds()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

@@ -78,7 +78,7 @@ class Theatre : public ::testing::Test {
     return ring.take().at(0).picture();
   }
   static bool eventually(const std::function<bool()>& holds) {
-    for (int i = 0; i < 5000; ++i) {
+    for (int i = 0; i < 30000; ++i) {
       if (holds()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace weir::view {
 
@@ -23,6 +24,7 @@ void FramePacer::spend() {
 
 void FramePacer::measured(double milliseconds) {
   if (!(milliseconds > 0.0) || !std::isfinite(milliseconds)) return;
+  if (!std::exchange(warm_, true)) return;
   // Odd and few: it follows soon when frames become longer, and one that was held up does not count.
   constexpr size_t kKept = 9;
   if (last_.size() < kKept) {
@@ -32,7 +34,7 @@ void FramePacer::measured(double milliseconds) {
     next_ = (next_ + 1) % kKept;
   }
   std::vector<double> sorted = last_;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() - 1) / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   cost_ = *middle;
 }

@@ -15,9 +15,10 @@ class FramePacer {
   bool affords() const;
   /// A frame was submitted.
   void spend();
-  /// What a finished frame took. Not above 0: the device measures no time, and it stays unknown.
+  /// What a finished frame took. Not above 0: the device measures no time, and it stays unknown. The first one is left
+  /// out: drivers finish compiling in it, which can take a thousand times as long as the frame.
   void measured(double milliseconds);
-  /// The median of the last ones.
+  /// The median of the last ones, the lower one of an even number.
   std::optional<double> cost() const { return cost_; }
   /// Frames of another size or graph follow.
   void forget();
@@ -27,7 +28,7 @@ class FramePacer {
   size_t next_ = 0;
   std::optional<double> cost_;
   double credit_ = 0.0;
-  bool granted_ = false, spent_ = false;
+  bool granted_ = false, spent_ = false, warm_ = false;
 };
 
 }  // namespace weir::view

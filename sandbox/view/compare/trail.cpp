@@ -156,8 +156,8 @@ std::string Trail::words() const {
   const uint64_t begun = first_ - leftOut_;
   const uint64_t passed = seen_ && newest_ >= begun ? newest_ - begun + 1 : 0;
   if (leftOut_ > 0 && passed < leftOut_) return fmt::format("{} of {} frames left out: {}", passed, leftOut_, reason_);
-  const std::string made = fmt::format("median of {} frame{} and {} picture{}", times_.size(),
-                                       times_.size() == 1 ? "" : "s", errors_.size(), errors_.size() == 1 ? "" : "s");
+  std::string made = fmt::format("median of {} frame{} and {} picture{}", times_.size(), times_.size() == 1 ? "" : "s",
+                                 errors_.size(), errors_.size() == 1 ? "" : "s");
   if (current()) return made;
   if (seen_ && newest_ >= first_ && times_.empty()) return "no times: the device measures none";
   return fmt::format("{}: at least {} of each are wanted", made, options_.fewest);
