@@ -6,17 +6,16 @@ set -euo pipefail
 usage() {
   cat <<'TEXT'
 ./demo.sh          install, build, render scenes/cornell.glb through graphs/restir_di.json into out/demo.png
-./demo.sh --view   open the viewer (not built yet: says so and ends with status 2)
+./demo.sh --view   install, build, open the window on that scene and graph (docs/sandbox.md)
 ./demo.sh --help   this text
 TEXT
 }
 
+view=false
 case "${1:-}" in
   "") ;;
   -h | --help) usage; exit 0 ;;
-  --view)
-    echo "demo.sh: the viewer (weir view) is not built yet; ./demo.sh without --view renders out/demo.png" >&2
-    exit 2 ;;
+  --view) view=true ;;
   *) echo "demo.sh: '$1' is not known" >&2; usage >&2; exit 2 ;;
 esac
 if [ $# -gt 1 ]; then echo "demo.sh: '$2' is not known" >&2; exit 2; fi
@@ -24,6 +23,8 @@ if [ $# -gt 1 ]; then echo "demo.sh: '$2' is not known" >&2; exit 2; fi
 cd "$(dirname "${BASH_SOURCE[0]}")"
 start=$SECONDS
 tools/build.sh weir_app
+
+if $view; then exec build/release/bin/weir view graphs/restir_di.json --scene scenes/cornell.glb --exposure 2; fi
 
 mkdir -p out
 echo "rendering after $((SECONDS - start)) s of set-up"
@@ -44,4 +45,4 @@ PYTHON
 
 echo
 echo "The picture: $PWD/out/demo.png"
-echo "The viewer:  ./demo.sh --view  (not built yet)"
+echo "The window:  ./demo.sh --view"

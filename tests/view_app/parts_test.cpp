@@ -137,6 +137,13 @@ TEST(Messages, ANewerOneOfItsTopicTakesTheOldOnesPlace) {
   messages.clear("shader");
   messages.dismiss(messages.all()[0].number);
   EXPECT_TRUE(messages.all().empty());
+  messages.add(Severity::Info, "news", "x");
+  messages.add(Severity::Error, "error", "x");
+  messages.expire();
+  EXPECT_EQ(messages.all().size(), 2u);
+  messages.expire(std::chrono::steady_clock::now() + std::chrono::minutes(1));
+  ASSERT_EQ(messages.all().size(), 1u);
+  EXPECT_EQ(messages.all()[0].topic, "error");
   for (int i = 0; i < 100; ++i) messages.add(i == 50 ? Severity::Error : Severity::Info, std::to_string(i), "x");
   EXPECT_LE(messages.all().size(), 20u);
   EXPECT_TRUE(std::any_of(messages.all().begin(), messages.all().end(), [](const Message& m) { return m.severity == Severity::Error; }));

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace weir::view {
@@ -59,9 +60,8 @@ std::string PictureView::radiancePort(const graph::CompiledGraph& graph) {
   return {};
 }
 
-void PictureView::list(const Engine& engine) {
+void PictureView::list() {
   const graph::CompiledGraph& graph = *graph_;
-  (void)engine;
   a_.ports.clear();
   const auto add = [&](const std::string& name) {
     if (std::ranges::count(a_.ports, name) == 0) a_.ports.push_back(name);
@@ -105,7 +105,7 @@ void PictureView::follow(Engine& engine) {
   } else if (!wanted_.empty() && a_.port != wanted_) {
     a_.problem = fmt::format("'{}' is not there now", wanted_);
   }
-  list(engine);
+  list();
 }
 
 void PictureView::show(Engine& engine, const std::string& port) {
@@ -257,8 +257,9 @@ void PictureView::drawBeside(VkCommandBuffer commands, const gpu::Image& canvas,
     }
   }
   if (resource == nullptr) return;
-  if (kind_ == Beside::Second || besideChannels_.empty())
-    besideChannels_ = channelsOf(*resource, meaning, engine.stage().prepared.traits.f90);
+  const auto type = std::tuple(resource->type.kind, resource->type.layout.hash, resource->type.format, meaning);
+  if (besideChannels_.empty() || type != besideType_) besideChannels_ = channelsOf(*resource, meaning, engine.stage().prepared.traits.f90);
+  besideType_ = type;
   if (besideChannels_.empty()) return;
   const Channel* channel = a_.channels.empty() ? nullptr : findChannel(besideChannels_, a_.channels[a_.channel].name);
   if (channel == nullptr) channel = besideChannels_.data();

@@ -8,10 +8,12 @@
 #include "view/picture/range_meter.h"
 #include "view/picture/uploaded_picture.h"
 
-#include <array>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace weir::view {
@@ -75,7 +77,7 @@ class PictureView {
 
  private:
   enum class Beside : uint8_t { Nothing, Second, Picture, Source };
-  void list(const Engine& engine);
+  void list();
   /// What the slot's last frame brought: words and measurements.
   void collect(uint32_t slot, const std::vector<scene::GpuLight>& lights);
   bool take(Engine& engine, const std::string& port);
@@ -92,7 +94,7 @@ class PictureView {
   std::unique_ptr<UploadedPicture> uploaded_;
   Source source_;
   std::vector<Channel> besideChannels_;
-  uint64_t besideLayout_ = 0;
+  std::tuple<PortKind, uint64_t, Format, Meaning> besideType_{};  ///< that besideChannels_ are of
   Placement placement_;
   bool fitted_ = true, measureWanted_ = false, rangeWanted_ = false;
   float centredScale_ = 0.0f;
