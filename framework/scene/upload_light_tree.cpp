@@ -1,0 +1,30 @@
+#include <weir/scene/light_tree.h>
+#include <weir/scene/upload_light_tree.h>
+
+#include <chrono>
+#include <cstring>
+#include <vector>
+
+namespace weir::scene {
+
+LightTreeGpu::LightTreeGpu(const gpu::Device& device, const PreparedScene& prepared) {
+  const auto start = std::chrono::steady_clock::now();
+  const LightTree tree = buildLightTree(prepared.lights, prepared.bounds);
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  nodes_ = gpu::uploadBuffer(device, tree.nodes, kStorage, "scene light tree");
+  lights_ = gpu::uploadBuffer(device, tree.lights, kStorage, "scene light tree's lights");
+  GpuTreeHead head;
+  head.lights = static_cast<uint32_t>(tree.lights.size());
+  head.unplaced = tree.unplaced();
+  head.levels = tree.levels;
+  head.unplacedShare = tree.unplacedShare;
+  head.unit = tree.unit;
+  std::vector<std::byte> bytes(sizeof head + tree.entries.size() * sizeof(TreeEntry));
+  std::memcpy(bytes.data(), &head, sizeof head);
+  if (!tree.entries.empty())
+    std::memcpy(bytes.data() + sizeof head, tree.entries.data(), tree.entries.size() * sizeof(TreeEntry));
+  entries_ = gpu::uploadBuffer(device, bytes, kStorage, "scene light tree's entries");
+}
+
+}  // namespace weir::scene
