@@ -140,8 +140,8 @@ void Preparing::lightTree() {
   beforeKernels("the light tree");
   const graph::CompiledPass& pass = runtime_.compiled();
   if (lights().moves)
-    throw InputError(fmt::format("{} ({}) picks lights by place, but the clip moves lights of this scene", pass.name,
-                                 pass.type));
+    throw InputError(
+        fmt::format("{} ({}) picks lights by place, but the clip moves lights of this scene", pass.name, pass.type));
   runtime_.shared_.frame->scene().lightTree();  // fails here, if at all
   runtime_.interface_.lightTree = true;
 }

@@ -103,7 +103,7 @@ class SceneGpu {
   // What the frame constants say of the scene.
   uint32_t lightCount = 0, instanceCount = 0;
   uint32_t placedLights = 0;  ///< how many of the lights have a place, scene/light_tree.h
-  float diameter = 0.0f;  ///< of the bounding sphere, metres; at least twice the float error of its place
+  float diameter = 0.0f;      ///< of the bounding sphere, metres; at least twice the float error of its place
   float largestSide =
       0.0f;  ///< longest side of any triangle in the world, metres: rays meet it with an error that grows with it
   struct Draw {

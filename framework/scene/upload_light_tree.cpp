@@ -1,16 +1,13 @@
 #include <weir/scene/light_tree.h>
 #include <weir/scene/upload_light_tree.h>
 
-#include <chrono>
 #include <cstring>
 #include <vector>
 
 namespace weir::scene {
 
 LightTreeGpu::LightTreeGpu(const gpu::Device& device, const PreparedScene& prepared) {
-  const auto start = std::chrono::steady_clock::now();
   const LightTree tree = buildLightTree(prepared.lights, prepared.bounds);
-  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   nodes_ = gpu::uploadBuffer(device, tree.nodes, kStorage, "scene light tree");
   lights_ = gpu::uploadBuffer(device, tree.lights, kStorage, "scene light tree's lights");

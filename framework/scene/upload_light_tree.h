@@ -27,10 +27,8 @@ class LightTreeGpu {
   /// Nodes; placed lights; GpuTreeHead with the entries.
   std::array<VkBuffer, kBuffers> buffers() const { return {nodes_.handle(), lights_.handle(), entries_.handle()}; }
   uint64_t bytes() const { return nodes_.size() + lights_.size() + entries_.size(); }
-  double seconds() const { return seconds_; }  ///< that building took
 
  private:
-  double seconds_ = 0.0;
   gpu::Buffer nodes_, lights_, entries_;
 };
 

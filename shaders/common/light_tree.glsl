@@ -22,10 +22,11 @@ struct Pick {
 float importance(Region region, vec3 low, vec3 high, float power) {
   const vec3 near = (low - region.high) * lightTree.unit, far = (high - region.low) * lightTree.unit;  // corners of light - surface
   // How far above a surface's plane a light can be: each axis has the largest product of a normal's and a difference's part.
-  const vec3 rise = max(max(region.normalLow * near, region.normalLow * far), max(region.normalHigh * near, region.normalHigh * far));
+  const vec3 rise = MUTANT(86, region.normalLow * near, max(max(region.normalLow * near, region.normalLow * far),
+                                                            max(region.normalHigh * near, region.normalHigh * far)));
   // Shading rounds its own cosine, and may find light where this is 0 or hardly less.
   const vec3 reach = max(abs(near), abs(far));
-  const float height = MUTANT(81, 0.25 * rise.x, rise.x) + rise.y + rise.z + (reach.x + reach.y + reach.z) * (1.0 / 1048576.0);
+  const float height = rise.x + rise.y + rise.z + (reach.x + reach.y + reach.z) * (1.0 / 1048576.0);
   if (!(height > 0.0)) return 0.0;
   const vec3 gap = max(max(near, -far), 0.0);
   const float gap2 = dot(gap, gap);
@@ -130,7 +131,8 @@ Pick pickByPlace(Region region, uint bits, inout Random random) {
     if (!(a + b > 0.0)) return Pick(0u, 0.0);
     const uint share = firstShare(a, b);
     const bool taken = takesFirst(bits, share, fresh.x);
-    pdf *= float(taken ? share : 16777216u - share) * (1.0 / 16777216.0);
+    const float probability = float(taken ? share : 16777216u - share) * (1.0 / 16777216.0);
+    pdf *= MUTANT(81, level + 1u == lightTree.levels ? 0.5 : probability, probability);
     node = 2u * node + (taken ? 0u : 1u);
   }
   const Pick pick = pickInLeaf(region, lightNodes[node].lights, random);

@@ -181,6 +181,18 @@ render::Stage pointsStage() {
   return staged(b.scene, kIntoRoom);
 }
 
+/// The same under a sun, which has no place.
+render::Stage pointsAndSunStage() {
+  Builder b;
+  b.scene = pointsStage().scene;
+  scene::PunctualLight sun;
+  sun.kind = scene::LightKind::Directional;
+  sun.direction = glm::normalize(glm::vec3(-0.5f, -1.0f, -0.7f));
+  sun.intensity = {0.25f, 0.25f, 0.2f};
+  b.scene.lights.push_back(sun);
+  return staged(b.scene, kIntoRoom);
+}
+
 render::Stage movingStage() {
   render::StageOptions options;
   options.scene = sourcePath("scenes/cornell-moving.glb");
@@ -275,6 +287,8 @@ std::vector<Situation> makeSituations() {
                                {"initial.candidates=16", "initial.uniformShare=0.3"}));
   s.push_back(initialSituation("tiles", "the same lights from tiles", pointsStage,
                                {"initial.candidates=6", "initial.tiles=on", "initial.uniformShare=0.3"}));
+  s.push_back(initialSituation("place", "the same lights and a sun from tiles, by place", pointsAndSunStage,
+                               {"initial.candidates=6", "initial.tiles=on", "initial.picks=place"}));
   s.push_back(pathSituation("paths", "four bounces through the room", roomStage));
   s.push_back(pathSituation("sky-paths", "four bounces under a sky with a lamp", lampUnderSkyStage));
   return s;

@@ -1,5 +1,5 @@
-// The light tree: every light in it once, boxes and powers that hold what is below, and probabilities that add up and leave no
-// light out that can light a surface.
+// The light tree: every light in it once, boxes and powers that hold what is below, and probabilities that add up and
+// leave no light out that can light a surface.
 #include <weir/core/error.h>
 #include <weir/scene/light_tree.h>
 
@@ -22,8 +22,8 @@ struct Many {
   const char* name;
   size_t points = 0, triangles = 0, directional = 0;
   bool environment = false;
-  float size = 1.0f;    ///< of the box that they are in, m
-  float offset = 0.0f;  ///< of the box from the origin
+  float size = 1.0f;                             ///< of the box that they are in, m
+  float offset = 0.0f;                           ///< of the box from the origin
   bool flat = false, dot = false, wild = false;  ///< in a plane; all in one place; powers over 40 decades
 };
 
@@ -128,8 +128,8 @@ TEST(LightTree, HoldsEveryLightOnce) {
   }
 }
 
-// Halving along the longest side makes boxes small: of uniform points in a cube, the leaves' boxes together have less than the cube's
-// volume, and their longest sides are those of cubes of as many to within a factor of three.
+// Halving along the longest side makes boxes small: of uniform points in a cube, the leaves' boxes together have less
+// than the cube's volume, and their longest sides are those of cubes of as many to within a factor of three.
 TEST(LightTree, LeavesAreCompact) {
   const std::vector<GpuLight> lights = lightsOf({"", 20000}, 5);
   const LightTree tree = buildLightTree(lights, {});
@@ -171,8 +171,8 @@ TEST(LightTree, NumbersOfUnplacedLightsFollowTheirPowers) {
   }
 }
 
-// Random surfaces, alone and in groups. Together all picks have probability 1, less what ends below a node that seemed worth
-// something; and a light that stands above a surface has some.
+// Random surfaces, alone and in groups. Together all picks have probability 1, less what ends below a node that seemed
+// worth something; and a light that stands above a surface has some.
 TEST(LightTree, ProbabilitiesAddUpAndLeaveNoneOut) {
   for (const Many& many : kEvery) {
     SCOPED_TRACE(many.name);
@@ -186,10 +186,12 @@ TEST(LightTree, ProbabilitiesAddUpAndLeaveNoneOut) {
     for (int t = 0; t < kTiles; ++t) {
       TileBoxes tile;
       std::vector<std::pair<glm::dvec3, glm::dvec3>> surfaces;
-      const glm::dvec3 place(u(random), u(random), u(random)), normal(u(random) - 0.5, u(random) - 0.5, u(random) - 0.5);
+      const glm::dvec3 place(u(random), u(random), u(random)),
+          normal(u(random) - 0.5, u(random) - 0.5, u(random) - 0.5);
       for (int i = 0; i < (t % 3 == 0 ? 1 : 20); ++i) {
         const double wide = t % 3 == 1 ? 0.02 : 0.6;
-        const glm::dvec3 p = (place + wide * glm::dvec3(u(random), u(random), u(random)) + double{many.offset}) * double{many.size};
+        const glm::dvec3 p =
+            (place + wide * glm::dvec3(u(random), u(random), u(random)) + double{many.offset}) * double{many.size};
         const glm::dvec3 n = glm::normalize(normal + wide * glm::dvec3(u(random), u(random), u(random)));
         surfaces.emplace_back(p, n);
         tile.add(p, n);
@@ -215,7 +217,8 @@ TEST(LightTree, ProbabilitiesAddUpAndLeaveNoneOut) {
   }
 }
 
-// A light that is near is picked more often than the same light far away, and one of twice the power about twice as often.
+// A light that is near is picked more often than the same light far away, and one of twice the power about twice as
+// often.
 TEST(LightTree, NearAndBrightLightsAreLikely) {
   std::vector<GpuLight> lights(64);
   for (size_t i = 0; i < lights.size(); ++i) {

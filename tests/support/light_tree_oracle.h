@@ -1,5 +1,5 @@
-// With which probability surfaces pick each light of a tree, in double precision, from docs/lights.md's text and by the definition: bounds by
-// trying every corner, probabilities down every path.
+// With which probability surfaces pick each light of a tree, in double precision, from docs/lights.md's text and by the
+// definition: bounds by trying every corner, probabilities down every path.
 #pragma once
 
 #include <weir/scene/light_tree.h>
@@ -21,7 +21,9 @@ struct Box {
   bool holds(const glm::dvec3& p, double slack) const {
     return glm::all(glm::greaterThanEqual(p, low - slack)) && glm::all(glm::lessThanEqual(p, high + slack));
   }
-  glm::dvec3 corner(int i) const { return {(i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y, (i & 4) ? high.z : low.z}; }
+  glm::dvec3 corner(int i) const {
+    return {(i & 1) ? high.x : low.x, (i & 2) ? high.y : low.y, (i & 4) ? high.z : low.z};
+  }
 };
 
 /// Places and geometric normals of the surfaces of a tile.
@@ -83,7 +85,8 @@ class LightTreeOracle {
   }
   void descend(const TileBoxes& tile, size_t node, uint32_t level, double probability, std::vector<double>& p) const {
     if (level == tree_.levels) {
-      const uint32_t first = tree_.nodes[node].lights & ((1u << scene::kLeafShift) - 1), count = tree_.nodes[node].lights >> scene::kLeafShift;
+      const uint32_t first = tree_.nodes[node].lights & ((1u << scene::kLeafShift) - 1),
+                     count = tree_.nodes[node].lights >> scene::kLeafShift;
       std::vector<double> worths;
       double sum = 0.0;
       for (uint32_t i = first; i < first + count; ++i) {
