@@ -5,47 +5,46 @@
 #include "light_tree.glsl"
 #include "surface.glsl"
 
-const uint kTilePixels = 256u, kParts = 16u, kBounds = 12u;
+const uint kTilePixels = 256u, kParts = 16u, kSides = 6u;
 const float kNothing = 3.4028235e38;
 
-// Least of each number: of positions, negated positions, normals, negated normals.
-shared float tileBounds[kBounds * kTilePixels];
-shared float partBounds[kBounds * kParts];
+// The least of each number: of a vector's parts and of their negatives. Together with the picks they fit into the 16 KiB that
+// every device has.
+shared float tileSides[kSides * kTilePixels];
+shared float partSides[kSides * kParts];
+shared float boxSides[2u * kSides];
 
-void setBounds(uint at, vec3 v) {
+// All of a group must call it, and wait with barrier() before they read the sides from `first` on.
+void gatherSides(uint first, bool lit, vec3 v) {
+  const uint thread = gl_LocalInvocationIndex;
   for (uint axis = 0u; axis < 3u; ++axis) {
-    tileBounds[(at + axis) * kTilePixels + gl_LocalInvocationIndex] = v[axis];
-    tileBounds[(at + 3u + axis) * kTilePixels + gl_LocalInvocationIndex] = -v[axis];
+    tileSides[axis * kTilePixels + thread] = lit ? v[axis] : kNothing;
+    tileSides[(axis + 3u) * kTilePixels + thread] = lit ? -v[axis] : kNothing;
+  }
+  barrier();
+  if (thread < kSides * kParts) {
+    const uint begin = thread / kParts * kTilePixels + thread % kParts;
+    float least = kNothing;
+    for (uint i = 0u; i < MUTANT(85, kTilePixels / 2u, kTilePixels); i += kParts) least = min(least, tileSides[begin + i]);
+    partSides[thread] = least;
+  }
+  barrier();
+  if (thread < kSides) {
+    float least = kNothing;
+    for (uint i = 0u; i < kParts; ++i) least = min(least, partSides[thread * kParts + i]);
+    boxSides[first + thread] = least;
   }
 }
 
 // All of a group must call it. False, for all alike: there is no surface. It depends on surfaces alone.
 bool tileRegion(bool lit, Surface surface, out Region region) {
-  const uint thread = gl_LocalInvocationIndex;
-  if (lit) {
-    setBounds(0u, surface.position);
-    setBounds(6u, MUTANT(84, surface.view, surface.geometricNormal));
-  } else {
-    for (uint i = 0u; i < kBounds; ++i) tileBounds[i * kTilePixels + thread] = kNothing;
-  }
+  gatherSides(0u, lit, surface.position);
+  gatherSides(kSides, lit, MUTANT(84, surface.view, surface.geometricNormal));
   barrier();
-  if (thread < kBounds * kParts) {
-    const uint first = thread / kParts * kTilePixels + thread % kParts;
-    float least = kNothing;
-    for (uint i = 0u; i < MUTANT(85, kTilePixels / 2u, kTilePixels); i += kParts) least = min(least, tileBounds[first + i]);
-    partBounds[thread] = least;
-  }
-  barrier();
-  if (thread < kBounds) {
-    float least = kNothing;
-    for (uint i = 0u; i < kParts; ++i) least = min(least, partBounds[thread * kParts + i]);
-    tileBounds[thread] = least;
-  }
-  barrier();
-  region.low = vec3(tileBounds[0], tileBounds[1], tileBounds[2]);
-  region.high = -vec3(tileBounds[3], tileBounds[4], tileBounds[5]);
-  region.normalLow = vec3(tileBounds[6], tileBounds[7], tileBounds[8]);
-  region.normalHigh = -vec3(tileBounds[9], tileBounds[10], tileBounds[11]);
+  region.low = vec3(boxSides[0], boxSides[1], boxSides[2]);
+  region.high = -vec3(boxSides[3], boxSides[4], boxSides[5]);
+  region.normalLow = vec3(boxSides[6], boxSides[7], boxSides[8]);
+  region.normalHigh = -vec3(boxSides[9], boxSides[10], boxSides[11]);
   return region.low.x <= region.high.x;
 }
 
