@@ -57,7 +57,8 @@ LightSummary Answers<Base>::lights() const {
   }
   const scene::SceneGpu& scene = runtime_.shared_.frame->scene();
   const scene::SceneTraits& traits = scene.traits;
-  return {scene.lightCount, !traits.triangleLights && !traits.shapedLights && !traits.environment};
+  return {scene.lightCount, !traits.triangleLights && !traits.shapedLights && !traits.environment, scene.placedLights,
+          !scene.prepared().movingLights.empty()};
 }
 
 template class Answers<PrepareContext>;
@@ -133,6 +134,16 @@ void Preparing::texture(const std::string& name, TextureData data) {
   gpu::check(vkCreateSampler(runtime_.device().handle(), &info, nullptr, &own.sampler), "vkCreateSampler");
   runtime_.textures_.push_back(std::move(own));
   runtime_.interface_.textures.emplace_back(name, data.depth > 0);
+}
+
+void Preparing::lightTree() {
+  beforeKernels("the light tree");
+  const graph::CompiledPass& pass = runtime_.compiled();
+  if (lights().moves)
+    throw InputError(
+        fmt::format("{} ({}) picks lights by place, but the clip moves lights of this scene", pass.name, pass.type));
+  runtime_.shared_.frame->scene().lightTree();  // fails here, if at all
+  runtime_.interface_.lightTree = true;
 }
 
 Kernel Preparing::kernel(const std::string& file, const KernelOptions& options) {

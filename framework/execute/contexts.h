@@ -33,6 +33,7 @@ class Preparing final : public Answers<PrepareContext> {
   using Answers::Answers;
   void scratch(const std::string& name, const PortType& type) override;
   void texture(const std::string& name, TextureData data) override;
+  void lightTree() override;
   Kernel kernel(const std::string& file, const KernelOptions& options) override;
   Kernel rayKernel(const std::string& file, const KernelOptions& options) override;
   Kernel rasterKernel(const std::string& file, const std::string& target, const KernelOptions& options) override;

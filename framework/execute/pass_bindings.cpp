@@ -1,4 +1,5 @@
-// A pass's descriptors: set 1, one binding for each input, output, scratch resource and texture, in that order.
+// A pass's descriptors: set 1, one binding for each input, output, scratch resource, texture and buffer of the light
+// tree, in that order.
 #include <fmt/format.h>
 #include <weir/core/error.h>
 #include <weir/execute/pass_runtime.h>
@@ -29,6 +30,8 @@ void PassRuntime::makeLayouts() {
   for (const PortDescription& output : d.outputs) add(descriptorType(output.type), true);
   for (const Scratch& s : interface_.scratch) add(descriptorType(s.type), true);
   for (size_t i = 0; i < textures_.size(); ++i) add(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, true);
+  if (interface_.lightTree)
+    for (uint32_t i = 0; i < scene::LightTreeGpu::kBuffers; ++i) add(VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, true);
 
   VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   info.bindingCount = static_cast<uint32_t>(bindings.size());
@@ -86,7 +89,7 @@ std::vector<PassRuntime::Slot> PassRuntime::slotsFor(const KernelOptions& option
 void PassRuntime::makeSets(PreparedKernel& kernel, uint32_t count) {
   const auto slots = static_cast<uint32_t>(kernel.slots.size()), textures = static_cast<uint32_t>(textures_.size());
   const std::array<VkDescriptorPoolSize, 3> sizes = {
-      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, count * slots + 1},
+      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, count * (slots + scene::LightTreeGpu::kBuffers) + 1},
        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, count * slots + 1},
        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, count * textures + 1}}};
   VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
@@ -139,6 +142,15 @@ void PassRuntime::writeSet(const PreparedKernel& kernel, VkDescriptorSet set, co
     VkDescriptorImageInfo& image = images[kernel.slots.size() + i];
     image = {textures_[i].sampler, textures_[i].image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     add(firstTexture + static_cast<uint32_t>(i), VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER).pImageInfo = &image;
+  }
+  std::array<VkDescriptorBufferInfo, scene::LightTreeGpu::kBuffers> tree{};
+  if (interface_.lightTree) {
+    const auto handles = shared_.frame->scene().lightTree().buffers();
+    for (uint32_t i = 0; i < tree.size(); ++i) {
+      tree[i] = {handles[i], 0, VK_WHOLE_SIZE};
+      add(firstTexture + static_cast<uint32_t>(textures_.size()) + i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER).pBufferInfo =
+          &tree[i];
+    }
   }
   vkUpdateDescriptorSets(device().handle(), static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }

@@ -145,7 +145,7 @@ std::string PassRuntime::pipelineKey(KernelKind kind, const std::vector<const st
   for (const PortDescription& p : compiled().description->inputs) key += p.type.kind == PortKind::Image ? 'I' : 'B';
   for (const PortDescription& p : compiled().description->outputs) key += p.type.kind == PortKind::Image ? 'I' : 'B';
   for (const Scratch& s : interface_.scratch) key += s.type.kind == PortKind::Image ? 'I' : 'B';
-  key += fmt::format(" {}", textures_.size());
+  key += fmt::format(" {}{}", textures_.size(), interface_.lightTree ? "T" : "");
   for (const uint32_t constant : constants_) key += fmt::format(",{}", constant);
   for (const std::vector<uint32_t>* module : spirv) {
     const std::string_view bytes(reinterpret_cast<const char*>(module->data()), module->size() * 4);

@@ -160,6 +160,19 @@ std::string port(const std::string& prefix, const std::string& name, const PortT
   return s;
 }
 
+/// Host sides: scene/light_tree.h, scene/upload_light_tree.h.
+std::string lightTree(uint32_t binding) {
+  return fmt::format(R"(#define HAS_LIGHT_TREE 1
+struct LightNode {{ vec3 low; float power; vec3 high; uint lights; }};
+layout(set = 1, binding = {}, std430) readonly buffer LightNodeBlock {{ LightNode lightNodes[]; }};
+layout(set = 1, binding = {}, std430) readonly buffer PlacedLightBlock {{ vec4 placedLights[]; }};
+layout(set = 1, binding = {}, std430) readonly buffer LightTreeBlock {{
+  uint lights, unplaced, levels, unplacedShare; float unit; uint pad[3]; uvec2 entries[];
+}} lightTree;
+)",
+                     binding, binding + 1, binding + 2);
+}
+
 std::string ports(const KernelInterface& k) {
   std::string structs, s;
   std::vector<std::string> known;
@@ -194,6 +207,7 @@ std::string ports(const KernelInterface& k) {
     s += fmt::format("layout(set = 1, binding = {}) uniform {} texture_{};\n", binding++,
                      volume ? "sampler3D" : "sampler2D", name);
   }
+  if (k.lightTree) s += lightTree(binding);
   return structs + s;
 }
 

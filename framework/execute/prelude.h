@@ -20,7 +20,7 @@ struct Scratch {
 };
 
 /// Everything that a kernel of a pass can see; binding numbers in set 1 count through inputs, outputs, scratch,
-/// textures.
+/// textures, and the light tree's buffers.
 struct KernelInterface {
   const graph::CompiledGraph* graph = nullptr;
   const graph::CompiledPass* pass = nullptr;
@@ -29,6 +29,7 @@ struct KernelInterface {
   bool countRays = false;
   uint32_t sceneTextures = 1;
   scene::SceneTraits traits;
+  bool lightTree = false;
 };
 
 enum class KernelKind : uint8_t { Compute, RayPipeline, RayQuery, Vertex, Fragment };

@@ -50,6 +50,8 @@ struct TextureData {
 struct LightSummary {
   uint32_t count = 0;       ///< entries of the shader's sceneLights
   bool pointsOnly = false;  ///< all of them are point lights without a range
+  uint32_t placed = 0;      ///< how many have a place: all but directional ones and the environment
+  bool moves = false;       ///< a clip moves some of them
 };
 
 /// Answers about the compiled pass. Asking for what the description doesn't declare throws InputError naming pass and
@@ -74,6 +76,9 @@ class PrepareContext : public PassContext {
   /// A buffer or image of the pass's own, alive within a frame.
   virtual void scratch(const std::string& name, const PortType& type) = 0;
   virtual void texture(const std::string& name, TextureData data) = 0;
+  /// Lets the pass's kernels pick lights by where surfaces are (shaders/common/light_tree.glsl), of passes that need
+  /// scene.lights. The tree is built when the first pass of all asks for it. InputError where lights move.
+  virtual void lightTree() = 0;
   /// A compute kernel: the file defines `void run(uvec2 id)`, called once for each id below the launch's size. The
   /// device's limits hold for larger groups than 8 × 8 (InputError).
   virtual Kernel kernel(const std::string& file, const KernelOptions& options = {}) = 0;

@@ -1,4 +1,5 @@
 #include <weir/core/error.h>
+#include <weir/scene/light_tree.h>
 #include <weir/scene/upload.h>
 
 #include <algorithm>
@@ -93,6 +94,7 @@ SceneGpu::SceneGpu(const gpu::Device& device, const Scene& scene, const Prepared
   makeLayout();
 
   lightCount = static_cast<uint32_t>(prepared.lights.size());
+  placedLights = static_cast<uint32_t>(std::ranges::count_if(prepared.lights, hasPlace));
   instanceCount = static_cast<uint32_t>(prepared.instances.size());
   largestSide = longestSide(prepared);
   Bounds bounds = prepared.bounds;
@@ -122,10 +124,22 @@ void SceneGpu::updateLights(const PreparedScene& prepared) {
     vkCmdCopyBuffer(commands, alias.handle(), alias_.handle(), 1, &aliasBytes);
     gpu::fullBarrier(commands);
   });
+  const std::lock_guard lock(treeMutex_);
+  if (lightTree_) lightTree_->update(*device_, prepared);
+}
+
+const LightTreeGpu& SceneGpu::lightTree() const {
+  const std::lock_guard lock(treeMutex_);
+  if (!lightTree_) lightTree_ = std::make_unique<LightTreeGpu>(*device_, *prepared_);
+  return *lightTree_;
 }
 
 uint64_t SceneGpu::bytes() const {
   uint64_t sum = acceleration_.bytes() + environment_.bytes();
+  {
+    const std::lock_guard lock(treeMutex_);
+    if (lightTree_) sum += lightTree_->bytes();
+  }
   for (const gpu::Buffer* b : {&positions_, &vertices_, &triangles_, &instances_, &materials_, &lights_, &alias_,
                                &lightOfTriangle_, &colors_, &uvs1_, &speculars_, &textureUses_, &specularAlbedo_}) {
     sum += b->size();

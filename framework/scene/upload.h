@@ -5,9 +5,12 @@
 #include <weir/gpu/memory.h>
 #include <weir/scene/prepared.h>
 #include <weir/scene/upload_environment.h>
+#include <weir/scene/upload_light_tree.h>
 #include <weir/trace/acceleration.h>
 
 #include <array>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 namespace weir::scene {
@@ -67,8 +70,8 @@ struct MovingBindings {
 
 class SceneGpu {
  public:
-  /// Uploads and builds everything, and waits. Where the scene's traits say that a clip moves it, `scene` and
-  /// `prepared` must outlive this, and the buffers hold it at rest.
+  /// Uploads and builds everything, and waits. `scene` and `prepared` must outlive this. Where the scene's traits say
+  /// that a clip moves it, the buffers hold it at rest.
   SceneGpu(const gpu::Device& device, const Scene& scene, const PreparedScene& prepared, bool withAcceleration);
   ~SceneGpu();
   SceneGpu(const SceneGpu&) = delete;
@@ -96,12 +99,15 @@ class SceneGpu {
   VkBuffer vertices() const { return vertices_.handle(); }
   VkBuffer lights() const { return lights_.handle(); }
   VkBuffer alias() const { return alias_.handle(); }
+  /// For picks of lights by place: built when first asked for, from lights at rest. Any thread may ask.
+  const LightTreeGpu& lightTree() const;
 
   SceneTraits traits;  ///< shaders are compiled for them
 
   // What the frame constants say of the scene.
   uint32_t lightCount = 0, instanceCount = 0;
-  float diameter = 0.0f;  ///< of the bounding sphere, metres; at least twice the float error of its place
+  uint32_t placedLights = 0;  ///< how many of the lights have a place, scene/light_tree.h
+  float diameter = 0.0f;      ///< of the bounding sphere, metres; at least twice the float error of its place
   float largestSide =
       0.0f;  ///< longest side of any triangle in the world, metres: rays meet it with an error that grows with it
   struct Draw {
@@ -131,6 +137,8 @@ class SceneGpu {
   std::vector<Texture> textures_;
   EnvironmentGpu environment_;
   trace::Acceleration acceleration_;
+  mutable std::mutex treeMutex_;
+  mutable std::unique_ptr<LightTreeGpu> lightTree_;
   VkDescriptorSetLayout layout_ = VK_NULL_HANDLE;
   VkDescriptorPool pool_ = VK_NULL_HANDLE;
 };

@@ -8,7 +8,7 @@
 namespace weir::passes {
 
 void Initial::describe(PassDescription& d) {
-  d.doc("Light candidates by power, resampled into each pixel's reservoirs (RIS)");
+  d.doc("Light candidates by power or place, resampled into each pixel's reservoirs (RIS)");
   d.input("surface", perPixel<PackedSurface>());
   d.output("reservoirs", perPixel<Reservoir>()).times("samples").doc("One or more reservoirs a pixel");
   d.param("candidates", 32).range(1, 1024).doc("Lights that each pixel looks at");
@@ -25,8 +25,14 @@ void Initial::describe(PassDescription& d) {
   d.param("uniformShare", 0.1f)
       .range(0, 1)
       .doc(
-          "Share of the candidates picked uniformly among all lights, the rest by power: bounds the error of dim "
-          "lights close by");
+          "With picks by power: share of the candidates picked uniformly among all lights, which bounds the error of "
+          "dim lights close by");
+  d.param("picks", "auto")
+      .oneOf({"auto", "power", "place"})
+      .doc(
+          "How lights are picked: by power, wherever they are, or by power and distance from what a tile of 16 x 16 "
+          "pixels shows, with a light tree, for tiles alone and lights that no clip moves; auto: by place where tiles "
+          "are on and there are 4096 lights or more that have one and stay");
   d.param("tiles", "auto")
       .oneOf({"auto", "on", "off"})
       .doc(
@@ -50,9 +56,33 @@ void Initial::describe(PassDescription& d) {
   d.needs(Need::FrameCamera).needs(Need::FrameIndex);
 }
 
+namespace {
+
+constexpr uint32_t kManyLights = 4096;  // from here on, places pay
+
+/// Whether the tiles pick lights by place. InputError where that is asked for and can't be.
+bool picksByPlace(const PrepareContext& c, bool tiled) {
+  const std::string picks = c.text("picks");
+  const LightSummary lights = c.lights();
+  if (picks == "auto") return tiled && !lights.moves && lights.placed >= kManyLights;
+  if (picks == "power") return false;
+  if (!tiled)
+    throw InputError(
+        "picks 'place' are made for tiles, and go neither with tiles 'off' nor with bsdfRays above 0; expected picks "
+        "'auto' or 'power', or tiles 'on' and bsdfRays 0");
+  if (lights.moves)
+    throw InputError(
+        "picks 'place' need lights that stay, and the clip moves some of this scene's; expected picks 'auto' or "
+        "'power'");
+  return true;
+}
+
+}  // namespace
+
 void Initial::prepare(PrepareContext& c) {
   ordered_ = false;
   const std::string tiles = c.text("tiles");
+  const bool byPlace = picksByPlace(c, tiles != "off" && c.integer("bsdfRays") == 0);
   if (c.integer("bsdfRays") > 0) {
     if (tiles == "on")
       throw InputError(
@@ -69,6 +99,7 @@ void Initial::prepare(PrepareContext& c) {
       rays_.scratch(c);
       options.defines.emplace_back("ORDERS_RAYS", "1");
     }
+    if (byPlace) c.lightTree();
     kernel_ = c.kernel("initial_tiles.glsl", options);
     if (ordered_) rays_.prepare(c, "initial_visibility.glsl");
     return;

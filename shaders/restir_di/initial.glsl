@@ -36,7 +36,7 @@ void offerRay(inout Selection selections[out_reservoirs_count], Surface surface,
     at = evaluateEnvironment(place, surface.position);
     target = targetFunction(surface, at);
     if (!(target > 0.0)) return;
-    weight = environmentWeight(surface, environment, at, environmentDensity(place), target);
+    weight = environmentWeight(surface, mixedPdf(environment, param_uniformShare), at, environmentDensity(place), target);
 #else
     return;
 #endif
@@ -79,13 +79,13 @@ void run(uvec2 pixel) {
 #endif
 #ifdef SCENE_ENVIRONMENT
       if ((light.kind & kKindMask) == kEnvironment) {
-        weight = environmentWeight(surface, light, c.light, 1.0 / c.spread, target);
+        weight = environmentWeight(surface, mixedPdf(light, param_uniformShare), c.light, 1.0 / c.spread, target);
       }
 #endif
       offerAll(selections, chosen, c.place, target, weight, false, random);
     }
 #ifdef SCENE_ENVIRONMENT
-    lookAlongBsdf(selections, surface, random);
+    lookAlongBsdf(selections, surface, mixedPdf(sceneLights[lightCount() - 1u], param_uniformShare), random);
 #endif
 #ifdef BSDF_RAYS
     for (int i = 0; i < param_bsdfRays; ++i) offerRay(selections, surface, random);

@@ -39,13 +39,14 @@ float triangleWeight(Surface surface, Light light, LightSample at, float density
 #endif
 
 #ifdef SCENE_ENVIRONMENT
-float environmentWeight(Surface surface, Light environment, LightSample light, float density, float target) {
+// `pick`: probability of picking the environment among all lights.
+float environmentWeight(Surface surface, float pick, LightSample light, float density, float target) {
 #ifdef BSDF_RAYS
   const float byBsdf = float(param_bsdfCandidates + param_bsdfRays);
 #else
   const float byBsdf = float(param_bsdfCandidates);
 #endif
-  return target / (float(param_candidates) * mixedPdf(environment, param_uniformShare) * density +
+  return target / (float(param_candidates) * pick * density +
                    MUTANT(31, 0.0, byBsdf) * bsdfDensity(surface, light.direction));
 }
 #endif
@@ -58,7 +59,7 @@ void offerAll(inout Selection selections[out_reservoirs_count], uint light, uint
 
 #ifdef SCENE_ENVIRONMENT
 // Directions of the environment by the BSDF.
-void lookAlongBsdf(inout Selection selections[out_reservoirs_count], Surface surface, inout Random random) {
+void lookAlongBsdf(inout Selection selections[out_reservoirs_count], Surface surface, float pick, inout Random random) {
   const uint last = lightCount() - 1u;  // where the environment is
   const Light environment = sceneLights[last];
   for (int i = 0; i < param_bsdfCandidates && (environment.kind & kKindMask) == kEnvironment; ++i) {
@@ -66,7 +67,7 @@ void lookAlongBsdf(inout Selection selections[out_reservoirs_count], Surface sur
     const LightSample light = evaluateEnvironment(place, surface.position);
     const float target = targetFunction(surface, light);
     if (!(target > 0.0)) continue;
-    offerAll(selections, last, place, target, environmentWeight(surface, environment, light, environmentDensity(place), target), false,
+    offerAll(selections, last, place, target, environmentWeight(surface, pick, light, environmentDensity(place), target), false,
              random);
   }
 }

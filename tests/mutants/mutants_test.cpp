@@ -49,7 +49,8 @@ std::string nameOf(const testing::TestParamInfo<std::string>& info) {
   std::erase(name, '-');
   return name;
 }
-INSTANTIATE_TEST_SUITE_P(Mutants, Quick, testing::Values("room-pairwise", "room-initial", "moving", "tiles"), nameOf);
+INSTANTIATE_TEST_SUITE_P(Mutants, Quick, testing::Values("room-pairwise", "room-initial", "moving", "tiles", "place"),
+                         nameOf);
 
 }  // namespace
 }  // namespace weir::test

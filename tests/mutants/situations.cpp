@@ -181,6 +181,33 @@ render::Stage pointsStage() {
   return staged(b.scene, kIntoRoom);
 }
 
+/// A terrace with its front, small lights over the one and before the other, a lamp, and a sun, which has no place. The
+/// camera sees the edge in a row of tiles: their first rows show the terrace, which the lights below don't reach. It
+/// looks along the terrace, where many lights lie beyond what it sees.
+render::Stage terraceStage() {
+  Builder b;
+  const int grey = b.material(coloured({0.6f, 0.6f, 0.6f}));
+  b.add(quad({-2, 0, 0}, {2, 0, 0}, {2, 0, -4}, {-2, 0, -4}, grey));
+  b.add(quad({-2, -2, 0}, {2, -2, 0}, {2, 0, 0}, {-2, 0, 0}, grey));
+  b.add(quad({-0.9f, 1.3f, -0.8f}, {-0.9f, 1.3f, -1.2f}, {-0.5f, 1.3f, -1.2f}, {-0.5f, 1.3f, -0.8f},
+             b.material(lamp({2, 2, 1.5f}, true))));
+  for (uint32_t i = 0; i < 60; ++i) {
+    scene::PunctualLight p;
+    const auto u = [&](uint32_t d) { return static_cast<float>(uniformOf(977 * i + d)); };
+    p.position = i % 2 == 0 ? glm::vec3(3 * u(1) - 1.5f, 0.3f + u(2), -3 * u(3))
+                            : glm::vec3(3 * u(1) - 1.5f, -0.2f - u(2), 0.3f + u(3));
+    p.intensity = glm::vec3(u(4), u(5), u(6)) * (i % 8 == 0 ? 0.3f : 0.05f);
+    if (i % 3 == 0) p.range = 3.0f;
+    b.scene.lights.push_back(p);
+  }
+  scene::PunctualLight sun;
+  sun.kind = scene::LightKind::Directional;
+  sun.direction = glm::normalize(glm::vec3(-0.5f, -1.0f, -0.7f));
+  sun.intensity = {0.25f, 0.25f, 0.2f};
+  b.scene.lights.push_back(sun);
+  return staged(b.scene, lookAt({0, 0.6f, 3}, {0, -0.0425f, 0}, 10));
+}
+
 render::Stage movingStage() {
   render::StageOptions options;
   options.scene = sourcePath("scenes/cornell-moving.glb");
@@ -275,6 +302,8 @@ std::vector<Situation> makeSituations() {
                                {"initial.candidates=16", "initial.uniformShare=0.3"}));
   s.push_back(initialSituation("tiles", "the same lights from tiles", pointsStage,
                                {"initial.candidates=6", "initial.tiles=on", "initial.uniformShare=0.3"}));
+  s.push_back(initialSituation("place", "many lights from tiles, by place", terraceStage,
+                               {"initial.candidates=6", "initial.tiles=on", "initial.picks=place"}));
   s.push_back(pathSituation("paths", "four bounces through the room", roomStage));
   s.push_back(pathSituation("sky-paths", "four bounces under a sky with a lamp", lampUnderSkyStage));
   return s;

@@ -31,6 +31,7 @@ class NotingPrepare final : public Answering<PrepareContext> {
  public:
   void scratch(const std::string&, const PortType&) override {}
   void texture(const std::string&, TextureData) override {}
+  void lightTree() override {}
   Kernel kernel(const std::string& file, const KernelOptions&) override {
     if (!failure.empty()) throw RuntimeError(failure);
     kernels.push_back(file);

@@ -6,6 +6,7 @@
 
 #include "laboratory.h"
 #include "setup.h"
+#include "support/environment_oracle.h"
 #include "support/small_scenes.h"
 
 namespace weir::test {
@@ -25,8 +26,8 @@ scene::Scene colouredPoints() {
 }
 
 // The mean of f · W over pixels, frames and seeds is the sum over all lights. Pixels of a block share a tile, so that
-// only the means of whole frames are independent. Chance of a false alarm: 1e-4 for each scene.
-void expectUnbiased(const scene::Scene& scene, double resolved) {
+// only the means of whole frames are independent. Chance of a false alarm: 1e-4 for each call.
+void expectUnbiased(const scene::Scene& scene, const char* picks, double resolved) {
   const View view = planeView(kSide, kSide, frontCamera());
   struct Run {
     int candidates, samples, frames;
@@ -39,7 +40,7 @@ void expectUnbiased(const scene::Scene& scene, double resolved) {
     PassTest t("restir_di.Initial");
     show(t, view, scene);
     t.param("candidates", std::to_string(run.candidates)).param("samples", std::to_string(run.samples));
-    t.param("tiles", "on").param("visibility", "false").seed(29);
+    t.param("tiles", "on").param("picks", picks).param("visibility", "false").seed(29);
     const oracle::World world(t.prepared());
     if (truth.empty()) {
       for (size_t i = 0; i < view.pixels(); ++i) truth.push_back(world.directLight(view[i], false));
@@ -63,10 +64,10 @@ void expectUnbiased(const scene::Scene& scene, double resolved) {
 }
 
 TEST(RestirTiles, PointsAreUnbiased) {
-  expectUnbiased(colouredPoints(), 0.02);
+  for (const char* picks : {"power", "place"}) expectUnbiased(colouredPoints(), picks, 0.02);
 }
 TEST(RestirTiles, LightsOfEveryKindAreUnbiased) {
-  expectUnbiased(smallScene({}), 0.02);
+  for (const char* picks : {"power", "place"}) expectUnbiased(smallScene({}), picks, 0.02);
 }
 
 // With one candidate W is 1 / p of the light that came out: exactly, whatever its colour was rounded to.
@@ -151,16 +152,23 @@ scene::Scene manyLights(bool mixture) {
   return b.scene;
 }
 
+glm::vec3 skyTexel(uint32_t x, uint32_t y) {
+  return x == 2 && y == 1 ? glm::vec3(1.5f, 1.2f, 1.0f) : glm::vec3(0.02f, 0.03f, 0.05f);
+}
+
 // Whole graphs with reuse in space and time, where pixels that merge have drawn from the same tiles. Chance of a false
 // alarm: 1e-3 for all tiles of the picture, and as much for all means.
-TEST(RestirTiles, ReuseStaysUnbiased) {
-  for (const bool mixture : {false, true}) {
-    SCOPED_TRACE(mixture ? "mixture" : "points");
-    Laboratory laboratory(manyLights(mixture), 32, 8);
+void expectUnbiasedReuse(const std::string& picks, const std::vector<std::string>& kinds) {
+  for (const std::string& kind : kinds) {
+    SCOPED_TRACE(kind);
+    const bool mixture = kind != "points";
+    scene::Scene scene = manyLights(mixture);
+    if (kind == "sky") scene.environment = environmentOf(8, 4, skyTexel);
+    Laboratory laboratory(std::move(scene), 32, 8);
     laboratory.measureTruth("1", 16, 3);
     const std::string mis = mixture ? "pairwise" : "z";
     Protocol p;
-    p.set = {"gbuffer.jitter=true",      "initial.candidates=4", "initial.tiles=on",
+    p.set = {"gbuffer.jitter=true",      "initial.candidates=4", "initial.tiles=on",    "initial.picks=" + picks,
              "temporal.confidenceCap=4", "spatial.radius=8",     "spatial.neighbours=3"};
     for (const std::string pass : {"temporal", "spatial"})
       for (const char* setting : {"depthThreshold=10", "normalThreshold=180", "visibilityRays=true"})
@@ -169,11 +177,17 @@ TEST(RestirTiles, ReuseStaysUnbiased) {
     p.set.push_back("spatial.mis=" + mis);
     p.restarts = 24;
     p.frames = 3;
-    const image::TileTest t = laboratory.test(p, 1e-3 / 2);
-    std::printf("%s %-8s |t| %.2f of %.2f, bias %+.2f %% (%+.2f ... %+.2f)\n", mixture ? "mixture" : "points ",
-                mis.c_str(), t.worstT, t.bound, 100 * t.relativeBias, 100 * t.intervalLow, 100 * t.intervalHigh);
+    const image::TileTest t = laboratory.test(p, 1e-3 / static_cast<double>(kinds.size()));
+    std::printf("%-7s %-8s |t| %.2f of %.2f, bias %+.2f %% (%+.2f ... %+.2f)\n", kind.c_str(), mis.c_str(), t.worstT,
+                t.bound, 100 * t.relativeBias, 100 * t.intervalLow, 100 * t.intervalHigh);
     expectAgreement(t, 0.08);
   }
+}
+TEST(RestirTiles, ReuseStaysUnbiased) {
+  expectUnbiasedReuse("power", {"points", "mixture"});
+}
+TEST(RestirTiles, ReuseOfPicksByPlaceStaysUnbiased) {
+  expectUnbiasedReuse("place", {"points", "mixture", "sky"});
 }
 
 }  // namespace
