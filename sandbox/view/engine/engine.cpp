@@ -171,6 +171,7 @@ void Engine::setStage(const render::StageOptions& options, std::unique_ptr<rende
   staged_.player.reset();
   staged_.gpu.reset();
   staged_ = std::move(staged);
+  lastInput_ = {};  // its state was the player's that is gone
   lightsEdited_ = false;
   ++sceneRevision_;
   seconds_ = staged_.stage->playback ? staged_.stage->playback->start : 0.0;
