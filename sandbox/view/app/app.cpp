@@ -233,10 +233,11 @@ void App::present() {
                   static_cast<uint32_t>(std::max(size.x, 0.0f)), static_cast<uint32_t>(std::max(size.y, 0.0f))};
   std::optional<PixelPlace> probe = pinned_;
   if (!probe && overPicture(mouse_)) probe = picture_->pixelAt(toCanvas(mouse_));
-  guard("picture", [&] {
+  guard("window", [&] {
     presenter_->show(
         [&](VkCommandBuffer commands, uint32_t slot, const gpu::Image& canvas) {
-          picture_->compose(commands, slot, canvas, rect, *engine_, probe);
+          // What can't be shown is said, and the frame of the window is finished all the same.
+          guard("picture", [&] { picture_->compose(commands, slot, canvas, rect, *engine_, probe); });
         },
         ImGui::GetDrawData());
   });

@@ -179,7 +179,8 @@ void App::handleShortcut(const Event& event) {
       if (control) ask(FileDialog::For::SaveShot, "picture.png");
       break;
     case Key::Z:
-      if (control) edits_.push_back(shift ? Edit(Redo{}) : Edit(Undo{}));
+      if (control && shift) edits_.emplace_back(Redo{});
+      if (control && !shift) edits_.emplace_back(Undo{});
       break;
     case Key::Q:
       if (control) want(Quit{});

@@ -87,10 +87,10 @@ Requests App::drawMenu(Ui& ui) {
   menu("File", [&] { drawFileMenu(ui, requests); });
   menu("Edit", [&] {
     if (ImGui::MenuItem(("Undo " + graphModel_.undoes).c_str(), "Ctrl+Z", false, document_.canUndo()))
-      edits_.push_back(Undo{});
+      edits_.emplace_back(Undo{});
     ui.marks.last("menu/Edit/undo");
     if (ImGui::MenuItem(("Redo " + graphModel_.redoes).c_str(), "Ctrl+Shift+Z", false, document_.canRedo()))
-      edits_.push_back(Redo{});
+      edits_.emplace_back(Redo{});
     ui.marks.last("menu/Edit/redo");
   });
   menu("View", [&] {

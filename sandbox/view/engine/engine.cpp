@@ -108,6 +108,8 @@ void Engine::setSize(glm::uvec2 size) {
   compile_ = options;
   if (second_) second_->change({}, second);
   secondCompile_ = second;
+  // A size is another history: a run of so many frames begins again.
+  if (left_) runFrames(run_);
 }
 
 void Engine::keep(const std::vector<std::string>& ports) {
@@ -206,6 +208,7 @@ bool Engine::advance(const std::optional<scene::Camera>& camera) {
     left_.reset();
     paused_ = true;
   }
+  if (std::exchange(steps_, false)) paused_ = true;
   return true;
 }
 
@@ -216,7 +219,8 @@ void Engine::setPaused(bool paused) {
 
 void Engine::step() {
   paused_ = false;
-  left_ = 1;
+  left_.reset();
+  steps_ = true;
 }
 
 void Engine::restart() {
@@ -224,12 +228,14 @@ void Engine::restart() {
   if (second_) second_->executor().resetHistory();
   frames_ = 0;
   left_.reset();
+  steps_ = false;
   if (staged_.stage->playback) seconds_ = staged_.stage->playback->start;
 }
 
 void Engine::runFrames(uint32_t frames) {
   restart();
   paused_ = false;
+  run_ = frames;
   if (frames > 0) left_ = frames;
 }
 

@@ -128,7 +128,9 @@ class Engine {
   bool countRays_ = false, lightsEdited_ = false;
   uint32_t seed_, firstFrame_, frames_ = 0;
   bool paused_ = false, plays_ = true;
-  std::optional<uint32_t> left_;  ///< frames to go until it pauses
+  std::optional<uint32_t> left_;  ///< frames to go of a run until it pauses
+  uint32_t run_ = 0;              ///< how many that were
+  bool steps_ = false;            ///< one frame, then pause
   double seconds_ = 0.0, shownSeconds_ = 0.0;
   execute::FrameInput lastInput_;
   uint64_t sceneRevision_ = 1;
