@@ -13,10 +13,10 @@ const float kParts = 16777216.0;  // of a choice
 struct Region {
   vec3 middle;         // of the places, m
   vec3 centre;         // the same in tree units
-  vec3 half;           // of the places' sides, in tree units
+  vec3 reach;           // of the places' sides, in tree units
   float spread;        // mean squared distance of what is spread evenly over the places' box from its middle
   vec3 normal;         // middle of the normals
-  vec3 perHalf, perD;  // how much lights can stand higher for each unit of the boxes' half sides, and of their distance
+  vec3 perReach, perD;  // how much lights can stand higher for each unit of the boxes' half sides, and of their distance
 };
 
 struct Pick {
@@ -28,24 +28,24 @@ Region regionOf(vec3 low, vec3 high, vec3 normalLow, vec3 normalHigh) {
   Region r;
   r.middle = 0.5 * low + 0.5 * high;
   r.centre = (r.middle - lightTree.origin) * lightTree.unit + 1.0;
-  r.half = max(high - r.middle, r.middle - low) * lightTree.unit;
-  r.spread = dot(r.half, r.half) * (1.0 / 3.0);
+  r.reach = max(high - r.middle, r.middle - low) * lightTree.unit;
+  r.spread = dot(r.reach, r.reach) * (1.0 / 3.0);
   r.normal = 0.5 * normalLow + 0.5 * normalHigh;
   // Shading rounds its own cosine, and may find light where none is expected: a part in 2²⁰ more.
   r.perD = max(normalHigh - r.normal, r.normal - normalLow) + 1.0 / 1048576.0;
-  r.perHalf = abs(r.normal) + r.perD;
+  r.perReach = abs(r.normal) + r.perD;
   return r;
 }
 
 // How much lights in a box are worth to a region: power · cosine / d². `d` is from the middle of the surfaces to that of the lights'
-// box, `half` are half of its sides, in tree units. 0 only if all of the box lies below every surface's horizon.
-float importance(Region region, vec3 d, vec3 half, float power) {
+// box, `reach` are half of its sides, in tree units. 0 only if all of the box lies below every surface's horizon.
+float importance(Region region, vec3 d, vec3 reach, float power) {
   // How far above a surface's plane a light can be: (n̄ + ν) · (d + δ) with the largest product of each part.
   const float up = dot(region.normal, d);
-  const float height = MUTANT(86, up, up + dot(region.perHalf, half + region.half) + dot(region.perD, abs(d)));
+  const float height = MUTANT(86, up, up + dot(region.perReach, reach + region.reach) + dot(region.perD, abs(d)));
   // From the middle of the lights to the nearest of the surfaces; what is spread evenly over half a side h is h²/3 from its middle.
-  const vec3 gap = max(abs(d) - region.half, 0.0);
-  const float d2 = dot(gap, gap) + dot(half, half) * (1.0 / 3.0) + region.spread;
+  const vec3 gap = max(abs(d) - region.reach, 0.0);
+  const float d2 = dot(gap, gap) + dot(reach, reach) * (1.0 / 3.0) + region.spread;
   const float near = inversesqrt(max(d2, 1.0 / 1099511627776.0));  // 2⁻⁴⁰ of the scene's size: places aren't known better
   return height > 0.0 ? power * clamp(height * near, 1.0 / 16777216.0, 1.0) * near * near : 0.0;
 }
@@ -54,8 +54,8 @@ float importance(Region region, vec3 d, vec3 half, float power) {
 float nodeImportance(Region region, uvec4 node) {
   const vec3 middle = uintBitsToFloat(0x3f800000u | uvec3((node.x >> 9u) & 0x7ffffcu, (node.y >> 9u) & 0x7ffffcu,
                                                           ((node.x & 0x7ffu) << 12u) | ((node.y & 0x7ffu) << 1u)));
-  const vec3 half = uintBitsToFloat((uvec3(node.z << 18u, node.z << 8u, node.z >> 2u) & 0x0ffc0000u) + 0x30800000u);
-  return importance(region, middle - region.centre, half, uintBitsToFloat(node.w));
+  const vec3 reach = uintBitsToFloat((uvec3(node.z << 18u, node.z << 8u, node.z >> 2u) & 0x0ffc0000u) + 0x30800000u);
+  return importance(region, middle - region.centre, reach, uintBitsToFloat(node.w));
 }
 
 // A number below `total`, with the 64 bits of `bits` and `fresh`: each is as likely to within 2⁻³². `rest` is uniform again.
