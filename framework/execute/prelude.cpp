@@ -163,11 +163,10 @@ std::string port(const std::string& prefix, const std::string& name, const PortT
 /// Host sides: scene/light_tree.h, scene/upload_light_tree.h.
 std::string lightTree(uint32_t binding) {
   return fmt::format(R"(#define HAS_LIGHT_TREE 1
-struct LightNode {{ vec3 low; float power; vec3 high; uint lights; }};
-layout(set = 1, binding = {}, std430) readonly buffer LightNodeBlock {{ LightNode lightNodes[]; }};
+layout(set = 1, binding = {}, std430) readonly buffer LightNodeBlock {{ uvec4 lightNodes[]; }};
 layout(set = 1, binding = {}, std430) readonly buffer PlacedLightBlock {{ vec4 placedLights[]; }};
 layout(set = 1, binding = {}, std430) readonly buffer LightTreeBlock {{
-  uint lights, unplaced, levels, unplacedShare; float unit; uint pad[3]; uvec2 entries[];
+  uint lights, unplaced, levels, cutLevels; vec3 origin; float unit; uint unplacedShare, pad[3]; uvec2 entries[];
 }} lightTree;
 )",
                      binding, binding + 1, binding + 2);

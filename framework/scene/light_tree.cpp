@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace weir::scene {
@@ -42,6 +43,49 @@ float radiusOf(const GpuLight& light, const glm::vec3& centre) {
   return static_cast<float>(radius * (1.0 + 0x1p-20));
 }
 
+float unitOf(const Bounds& bounds, const Corners& lights) {
+  double longest = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = lights.low[axis], high = lights.high[axis];
+    if (!bounds.empty) {
+      low = std::min(low, double{bounds.low[axis]});
+      high = std::max(high, double{bounds.high[axis]});
+    }
+    longest = std::max(longest, high - low);
+  }
+  if (!(longest > 0.0)) return 1.0f;
+  return static_cast<float>(std::ldexp(1.0, std::clamp(-1 - std::ilogb(longest), -126, 126)));
+}
+
+/// 10 bits of LightNode::half, rounded up.
+uint32_t halfBits(double half) {
+  constexpr uint32_t kShift = 18, kMost = 1023, kLeast = 97u << 23;  // 2⁻³⁰
+  auto rounded = static_cast<float>(half);
+  if (rounded < half) rounded = std::nextafter(rounded, std::numeric_limits<float>::infinity());
+  const auto bits = std::bit_cast<uint32_t>(std::max(rounded, 0x1p-30f));
+  return std::min((bits - kLeast + (1u << kShift) - 1) >> kShift, kMost);
+}
+
+LightNode packNode(const LightTree& tree, const Corners& box, float power) {
+  constexpr int kBits[3] = {21, 21, 22};
+  // More than the rounding of a surface's place in tree units.
+  constexpr double kMargin = 0x1p-21;
+  uint32_t place[3] = {0, 0, 0};
+  LightNode node;
+  node.power = power;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = (double{box.low[axis]} - tree.origin[axis]) * tree.unit;
+    const double high = (double{box.high[axis]} - tree.origin[axis]) * tree.unit;
+    const double steps = std::ldexp(1.0, kBits[axis]);
+    place[axis] = static_cast<uint32_t>(std::clamp(std::round((low + high) / 2 * steps), 0.0, steps - 1.0));
+    const double middle = place[axis] / steps;
+    node.half |= halfBits(std::max(high - middle, middle - low) + kMargin) << (10 * axis);
+  }
+  node.place[0] = (place[0] << 11) | (place[2] >> 11);
+  node.place[1] = (place[1] << 11) | (place[2] & 0x7ffu);
+  return node;
+}
+
 class Builder {
  public:
   Builder(std::span<const GpuLight> lights, std::vector<Item> items, LightTree& tree)
@@ -50,24 +94,26 @@ class Builder {
     leastPower_ = 0x1p-24f / static_cast<float>(lights.size());
   }
 
-  void run() {
+  void run(const Bounds& bounds) {
     tree_.nodes.resize(2 * leaves_);
-    tree_.lights.resize(items_.size());
     tree_.entries.resize(items_.size());
+    boxes_.resize(2 * leaves_);
     const uint32_t serial = std::min(tree_.levels, kSerialLevels);
     for (uint32_t level = 0; level < serial; ++level)
       parallelFor(size_t{1} << level, [&](size_t i) { split((size_t{1} << level) + i, level); });
     parallelFor(size_t{1} << serial, [&](size_t i) { build((size_t{1} << serial) + i, serial); });
     for (size_t node = (size_t{1} << serial) - 1; node > 0; --node) join(node);
+    tree_.origin = boxes_[1].low;
+    tree_.unit = unitOf(bounds, boxes_[1]);
+    for (size_t node = 1; node < tree_.nodes.size(); ++node)
+      tree_.nodes[node] = packNode(tree_, boxes_[node], tree_.nodes[node].power);
   }
 
  private:
-  /// The first light under leaf number `leaf`: leaves have n / 2^levels lights each, rounded down or up.
-  uint64_t firstOf(uint64_t leaf) const { return (leaf * items_.size()) >> tree_.levels; }
   std::span<Item> itemsUnder(uint64_t node, uint32_t level) {
     const uint32_t below = tree_.levels - level;
     const uint64_t first = (node - (uint64_t{1} << level)) << below;
-    const uint64_t begin = firstOf(first), end = firstOf(first + (uint64_t{1} << below));
+    const uint64_t begin = tree_.firstOf(first), end = tree_.firstOf(first + (uint64_t{1} << below));
     return std::span(items_).subspan(begin, end - begin);
   }
 
@@ -102,30 +148,31 @@ class Builder {
   void fill(uint64_t node, uint32_t level) {
     const std::span<const Item> items = itemsUnder(node, level);
     const auto first = static_cast<uint32_t>(items.data() - items_.data());
-    LightNode& leaf = tree_.nodes[node];
-    leaf.lights = first | (static_cast<uint32_t>(items.size()) << kLeafShift);
+    Corners& all = boxes_[node];
     double power = 0.0;
     for (size_t i = 0; i < items.size(); ++i) {
       const GpuLight& light = lights_[items[i].light];
       const Corners box = cornersOf(light);
-      leaf.low = i == 0 ? box.low : glm::min(leaf.low, box.low);
-      leaf.high = i == 0 ? box.high : glm::max(leaf.high, box.high);
+      all.low = i == 0 ? box.low : glm::min(all.low, box.low);
+      all.high = i == 0 ? box.high : glm::max(all.high, box.high);
       PlacedLight& placed = tree_.lights[first + i];
       placed = {items[i].centre, std::max(light.pdf, leastPower_)};
       power += placed.power;
       tree_.entries[first + i] = {items[i].light, std::bit_cast<uint32_t>(radiusOf(light, placed.centre))};
     }
-    leaf.power = static_cast<float>(power);
+    tree_.nodes[node].power = static_cast<float>(power);
   }
 
   void join(uint64_t node) {
     if (node >= leaves_) return;
-    const LightNode &one = tree_.nodes[2 * node], &two = tree_.nodes[2 * node + 1];
-    tree_.nodes[node] = {glm::min(one.low, two.low), one.power + two.power, glm::max(one.high, two.high), 0};
+    const Corners &one = boxes_[2 * node], &two = boxes_[2 * node + 1];
+    boxes_[node] = {glm::min(one.low, two.low), glm::max(one.high, two.high)};
+    tree_.nodes[node].power = tree_.nodes[2 * node].power + tree_.nodes[2 * node + 1].power;
   }
 
   std::span<const GpuLight> lights_;
   std::vector<Item> items_;
+  std::vector<Corners> boxes_;  // of the nodes
   LightTree& tree_;
   uint64_t leaves_;
   float leastPower_ = 0.0f;
@@ -154,20 +201,6 @@ void addUnplaced(std::span<const GpuLight> lights, const std::vector<uint32_t>& 
     }
     tree.entries.push_back({light, static_cast<uint32_t>(next - 1)});
   }
-}
-
-float unitOf(const Bounds& bounds, const LightNode& root) {
-  double longest = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    double low = root.low[axis], high = root.high[axis];
-    if (!bounds.empty) {
-      low = std::min(low, double{bounds.low[axis]});
-      high = std::max(high, double{bounds.high[axis]});
-    }
-    longest = std::max(longest, high - low);
-  }
-  if (!(longest > 0.0)) return 1.0f;
-  return static_cast<float>(std::ldexp(1.0, std::clamp(-std::ilogb(longest), -126, 126)));
 }
 
 }  // namespace
@@ -204,15 +237,20 @@ LightTree buildLightTree(std::span<const GpuLight> lights, const Bounds& bounds)
     tree.nodes.resize(2);
     tree.unplacedShare = unplaced.empty() ? 0 : 1u << 24;
   } else {
-    while ((items.size() - 1) >> tree.levels >= LightTree::kMostInLeaf) ++tree.levels;
+    // Up to the cut leaves are free: they stop at one or two lights.
+    while ((items.size() - 1) >> tree.levels >= LightTree::kMostInLeaf ||
+           (tree.levels < LightTree::kMostCutLevels && items.size() >> (tree.levels + 1) > 0))
+      ++tree.levels;
+    tree.cutLevels = tree.levels;
+    while (tree.cutLevels > LightTree::kMostCutLevels) tree.cutLevels -= 2;
     if (!unplaced.empty()) {
       const double share = power > 0.0 ? std::clamp(unplacedPower / power, 0.25, 0.75) : 0.5;
       tree.unplacedShare = static_cast<uint32_t>(share * 0x1p24);
     }
-    Builder(lights, std::move(items), tree).run();
+    tree.lights.resize(items.size());
+    Builder(lights, std::move(items), tree).run(bounds);
   }
   addUnplaced(lights, unplaced, tree);
-  tree.unit = unitOf(bounds, tree.nodes[1]);
   return tree;
 }
 

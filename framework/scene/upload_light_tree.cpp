@@ -16,7 +16,9 @@ LightTreeGpu::LightTreeGpu(const gpu::Device& device, const PreparedScene& prepa
   head.lights = static_cast<uint32_t>(tree.lights.size());
   head.unplaced = tree.unplaced();
   head.levels = tree.levels;
+  head.cutLevels = tree.cutLevels;
   head.unplacedShare = tree.unplacedShare;
+  head.origin = tree.origin;
   head.unit = tree.unit;
   std::vector<std::byte> bytes(sizeof head + tree.entries.size() * sizeof(TreeEntry));
   std::memcpy(bytes.data(), &head, sizeof head);

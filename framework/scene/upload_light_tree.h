@@ -8,14 +8,15 @@
 
 namespace weir::scene {
 
-/// What stands before the entries, 32 bytes, as execute/prelude.cpp declares it.
+/// What stands before the entries, 48 bytes, as execute/prelude.cpp declares it.
 struct GpuTreeHead {
-  uint32_t lights = 0, unplaced = 0, levels = 0;
-  uint32_t unplacedShare = 0;  ///< in parts of 2²⁴
+  uint32_t lights = 0, unplaced = 0, levels = 0, cutLevels = 0;
+  glm::vec3 origin{0.0f};  ///< m
   float unit = 1.0f;
+  uint32_t unplacedShare = 0;  ///< in parts of 2²⁴
   uint32_t pad[3] = {0, 0, 0};
 };
-static_assert(sizeof(GpuTreeHead) == 32);
+static_assert(sizeof(GpuTreeHead) == 48);
 
 class LightTreeGpu {
  public:

@@ -7,9 +7,16 @@
 #include "random.glsl"
 #include "random_bits.glsl"
 
-// Boxes around the places of surfaces and around their geometric normals.
+const float kParts = 16777216.0;  // of a choice
+
+// What lights are judged for: a box around the places of surfaces and one around their geometric normals.
 struct Region {
-  vec3 low, high, normalLow, normalHigh;
+  vec3 middle;         // of the places, m
+  vec3 centre;         // the same in tree units
+  vec3 reach;           // of the places' sides, in tree units
+  float spread;        // mean squared distance of what is spread evenly over the places' box from its middle
+  vec3 normal;         // middle of the normals
+  vec3 perReach, perD;  // how much lights can stand higher for each unit of the boxes' half sides, and of their distance
 };
 
 struct Pick {
@@ -17,42 +24,53 @@ struct Pick {
   float pdf;  // 0: none
 };
 
-// How much lights in a box are worth to a region: power · cosine / d², where the cosine is a bound of those of all surfaces, and d² a
-// mean over both boxes. 0 only if all of the box lies below every surface's horizon.
-float importance(Region region, vec3 low, vec3 high, float power) {
-  const vec3 near = (low - region.high) * lightTree.unit, far = (high - region.low) * lightTree.unit;  // corners of light - surface
-  // How far above a surface's plane a light can be: each axis has the largest product of a normal's and a difference's part.
-  const vec3 rise = MUTANT(86, region.normalLow * near, max(max(region.normalLow * near, region.normalLow * far),
-                                                            max(region.normalHigh * near, region.normalHigh * far)));
-  // Shading rounds its own cosine, and may find light where this is 0 or hardly less.
-  const vec3 reach = max(abs(near), abs(far));
-  const float height = rise.x + rise.y + rise.z + (reach.x + reach.y + reach.z) * (1.0 / 1048576.0);
-  if (!(height > 0.0)) return 0.0;
-  const vec3 gap = max(max(near, -far), 0.0);
-  const float gap2 = dot(gap, gap);
-  const float cosine = height * height < gap2 ? height * inversesqrt(gap2) : 1.0;
-  // From the middle of the lights to the nearest of the surfaces; what is spread evenly over a side s is s²/12 from its middle.
-  const vec3 middle = 0.5 * low + 0.5 * high;
-  const vec3 d = (middle - clamp(middle, region.low, region.high)) * lightTree.unit;
-  const vec3 side = (high - low) * lightTree.unit, span = (region.high - region.low) * lightTree.unit;
-  const float d2 = dot(d, d) + (dot(side, side) + dot(span, span)) * (1.0 / 12.0);
-  return power * cosine / max(d2, 1.0 / 1099511627776.0);  // 2⁻⁴⁰ of the scene's size: places aren't known better
+Region regionOf(vec3 low, vec3 high, vec3 normalLow, vec3 normalHigh) {
+  Region r;
+  r.middle = 0.5 * low + 0.5 * high;
+  r.centre = (r.middle - lightTree.origin) * lightTree.unit + 1.0;
+  r.reach = max(high - r.middle, r.middle - low) * lightTree.unit;
+  r.spread = dot(r.reach, r.reach) * (1.0 / 3.0);
+  r.normal = 0.5 * normalLow + 0.5 * normalHigh;
+  // Shading rounds its own cosine, and may find light where none is expected: a part in 2²⁰ more.
+  r.perD = max(normalHigh - r.normal, r.normal - normalLow) + 1.0 / 1048576.0;
+  r.perReach = abs(r.normal) + r.perD;
+  return r;
 }
 
-// Probability of the first of two in parts of 2²⁴, by their importances; neither that has any goes without.
-uint firstShare(float first, float second) {
-  const uint share = uint(16777216.0 * (first / (first + second)));
-  return clamp(share, first > 0.0 ? 1u : 0u, second > 0.0 ? 16777215u : 16777216u);
+// How much lights in a box are worth to a region: power · cosine / d². `d` is from the middle of the surfaces to that of the lights'
+// box, `reach` are half of its sides, in tree units. 0 only if all of the box lies below every surface's horizon.
+float importance(Region region, vec3 d, vec3 reach, float power) {
+  // How far above a surface's plane a light can be: (n̄ + ν) · (d + δ) with the largest product of each part.
+  const float up = dot(region.normal, d);
+  const float height = MUTANT(86, up, up + dot(region.perReach, reach + region.reach) + dot(region.perD, abs(d)));
+  // From the middle of the lights to the nearest of the surfaces; what is spread evenly over half a side h is h²/3 from its middle.
+  const vec3 gap = max(abs(d) - region.reach, 0.0);
+  const float d2 = dot(gap, gap) + dot(reach, reach) * (1.0 / 3.0) + region.spread;
+  const float near = inversesqrt(max(d2, 1.0 / 1099511627776.0));  // 2⁻⁴⁰ of the scene's size: places aren't known better
+  return height > 0.0 ? power * clamp(height * near, 1.0 / 16777216.0, 1.0) * near * near : 0.0;
 }
 
-// Whether a uniform number takes the first of two with that probability, exactly; the number is then uniform again: what the choice used
-// up of it is taken from `fresh`.
-bool takesFirst(inout uint bits, uint share, uint fresh) {
-  const bool first = (bits >> 8u) < share;
-  const uint rest = first ? share : 16777216u - share;
-  const float scaled = float(first ? bits : bits - (share << 8u)) * (16777216.0 / float(rest));
-  bits = (uint(min(scaled, 4294967040.0)) & ~255u) | (fresh & 255u);
-  return first;
+// Of a node, as scene/light_tree.h packs it.
+float nodeImportance(Region region, uvec4 node) {
+  const vec3 middle = uintBitsToFloat(0x3f800000u | uvec3((node.x >> 9u) & 0x7ffffcu, (node.y >> 9u) & 0x7ffffcu,
+                                                          ((node.x & 0x7ffu) << 12u) | ((node.y & 0x7ffu) << 1u)));
+  const vec3 reach = uintBitsToFloat((uvec3(node.z << 18u, node.z << 8u, node.z >> 2u) & 0x0ffc0000u) + 0x30800000u);
+  return importance(region, middle - region.centre, reach, uintBitsToFloat(node.w));
+}
+
+// A number below `total`, with the 64 bits of `bits` and `fresh`: each is as likely to within 2⁻³². `rest` is uniform again.
+uint drawBelow(uint bits, uint fresh, uint total, out uint rest) {
+  uint high, low, more, least;
+  umulExtended(bits, total, high, low);
+  umulExtended(fresh, total, more, least);
+  rest = low + more;
+  return high + (rest < low ? 1u : 0u);
+}
+
+// What a draw leaves that took number `nth` of `parts` of what was drawn: uniform, and next to each other where draws were.
+uint restOfDraw(uint nth, uint parts, uint rest) {
+  const float scaled = (float(nth) + float(rest) * (1.0 / 4294967296.0)) * (4294967296.0 / float(parts));
+  return (uint(min(scaled, 4294967040.0)) & ~255u) | (rest & 255u);
 }
 
 // A light without a place, by power. Each has its numbers out of 2³².
@@ -70,72 +88,101 @@ Pick pickUnplaced(uint bits) {
   return Pick(lightTree.entries[low].x, numbers == 0u ? 1.0 : float(numbers) * (1.0 / 4294967296.0));
 }
 
-// Share of the picks, in parts of 2²⁴, that go to lights without a place.
-uint unplacedShare(Region region) {
+// Share of the picks, in parts of 2²⁴, that go to lights without a place. `placed`: whether any other light is worth anything.
+uint unplacedShare(bool placed) {
   if (lightTree.unplaced == 0u) return 0u;
-  const LightNode root = lightNodes[1];
-  return importance(region, root.low, root.high, root.power) > 0.0 ? lightTree.unplacedShare : 16777216u;
+  return placed ? lightTree.unplacedShare : 16777216u;
 }
 
 // Probability of picking the last of the lights without a place: of an environment, if the scene has one.
-float lastUnplacedPdf(Region region) {
+float lastUnplacedPdf(bool placed) {
   const uint last = lightTree.lights + lightTree.unplaced - 1u;
   const uint before = lightTree.unplaced > 1u ? lightTree.entries[last - 1u].y : 0xffffffffu;
   const uint numbers = lightTree.entries[last].y - before;
-  return (numbers == 0u ? 1.0 : float(numbers) * (1.0 / 4294967296.0)) * float(unplacedShare(region)) * (1.0 / 16777216.0);
+  return (numbers == 0u ? 1.0 : float(numbers) * (1.0 / 4294967296.0)) * float(unplacedShare(placed)) * (1.0 / kParts);
+}
+
+// The first light of a leaf, for the number of leaves that of all lights: ⌊leaf · n / 2^levels⌋.
+uint firstOfLeaf(uint leaf) {
+  uint high, low;
+  umulExtended(leaf, lightTree.lights, high, low);
+  return lightTree.levels == 0u ? low : (high << (32u - lightTree.levels)) | (low >> lightTree.levels);
+}
+
+float lightImportance(Region region, uint light) {
+  const vec4 placed = placedLights[light];
+#ifdef SCENE_TRIANGLE_LIGHTS
+  const float radius = uintBitsToFloat(lightTree.entries[light].y) * lightTree.unit;
+#else
+  const float radius = 0.0;
+#endif
+  return importance(region, (placed.xyz - region.middle) * lightTree.unit, vec3(radius), placed.w);
+}
+
+// Of up to four lights from `first` on; those that aren't there are worth nothing.
+vec4 lightImportances(Region region, uint first, uint count) {
+  vec4 worths = vec4(lightImportance(region, first), 0.0, 0.0, 0.0);
+  if (count > 1u) worths.y = lightImportance(region, first + 1u);
+  if (count > 2u) worths.z = lightImportance(region, first + 2u);
+  if (count > 3u) worths.w = lightImportance(region, first + 3u);
+  return worths;
+}
+
+// In whole parts, of which whatever is worth anything has one at least: so many of all parts are a chance, and what a pick is divided by.
+uvec4 partsOf(vec4 worths, float scale) { return uvec4(worths * scale) + uvec4(greaterThan(worths, vec4(0.0))); }
+uvec4 endsOf(uvec4 parts) {
+  const uint two = parts.x + parts.y, three = two + parts.z;
+  return uvec4(parts.x, two, three, three + parts.w);
+}
+
+// Which of four holds number `drawn` below the last end.
+struct Slice {
+  uint index, begin, parts;
+};
+Slice sliceAt(uvec4 ends, uint drawn) {
+  const uint begin = drawn < ends.x ? 0u : drawn < ends.y ? ends.x : drawn < ends.z ? ends.y : ends.z;
+  const uint end = drawn < ends.x ? ends.x : drawn < ends.y ? ends.y : drawn < ends.z ? ends.z : ends.w;
+  return Slice(uint(drawn >= ends.x) + uint(drawn >= ends.y) + uint(drawn >= ends.z), begin, end - begin);
 }
 
 // One of a leaf's lights.
-Pick pickInLeaf(Region region, uint leaf, inout Random random) {
-  const uint first = leaf & 0x0fffffffu, count = leaf >> 28u;
-  Pick pick = Pick(0u, 0.0);
-  float sum = 0.0;
-  vec4 u;
-  for (uint i = 0u; i < count; ++i) {
-    u = (i & 3u) == 0u ? next4(random) : u.yzwx;
-    const vec4 placed = placedLights[first + i];
-#ifdef SCENE_TRIANGLE_LIGHTS
-    const float radius = uintBitsToFloat(lightTree.entries[first + i].y);
-#else
-    const float radius = 0.0;
-#endif
-    const float worth = importance(region, placed.xyz - radius, placed.xyz + radius, placed.w);
-    if (!(worth > 0.0)) continue;
-    sum += worth;
-    if (u.x * sum < worth) pick = Pick(first + i, worth);
-  }
+Pick pickInLeaf(Region region, uint leaf, uint bits, uint fresh) {
+  const uint first = firstOfLeaf(leaf), count = firstOfLeaf(leaf + 1u) - first;
+  const vec4 some = lightImportances(region, first, count);
+  const vec4 rest = count > 4u ? lightImportances(region, first + 4u, count - 4u) : vec4(0.0);
+  const float sum = dot(some, vec4(1.0)) + dot(rest, vec4(1.0));
   if (!(sum > 0.0)) return Pick(0u, 0.0);
-  return Pick(lightTree.entries[pick.light].x, MUTANT(82, 1.0 / float(count), pick.pdf / sum));
+  const uvec4 ends = endsOf(partsOf(some, kParts / sum)), restEnds = endsOf(partsOf(rest, kParts / sum));
+  const uint total = ends.w + restEnds.w;
+  uint unused;
+  const uint drawn = drawBelow(bits, fresh, total, unused);
+  const bool isSome = drawn < ends.w;
+  const Slice slice = sliceAt(isSome ? ends : restEnds, isSome ? drawn : drawn - ends.w);
+  return Pick(lightTree.entries[first + slice.index + (isSome ? 0u : 4u)].x,
+              MUTANT(82, 1.0 / float(count), float(slice.parts) / float(total)));
 }
 
-// A light for a region. `bits` are uniform, and numbers next to each other pick lights next to each other: picks from even parts of
-// their range are spread over what there is.
-Pick pickByPlace(Region region, uint bits, inout Random random) {
+// A light under one of the nodes of the cut. `bits` are uniform; neighbouring numbers pick neighbouring lights.
+Pick pickBelow(Region region, uint node, uint bits, inout Random random) {
   uvec4 fresh = nextBits4(random);
   float pdf = 1.0;
-  const uint unplaced = unplacedShare(region);
-  if (unplaced > 0u) {
-    const bool taken = takesFirst(bits, unplaced, fresh.x);
-    pdf = float(taken ? unplaced : 16777216u - unplaced) * (1.0 / 16777216.0);
-    if (taken) {
-      const Pick pick = pickUnplaced(bits);
-      return Pick(pick.light, MUTANT(83, pick.pdf, pick.pdf * pdf));
-    }
+  for (uint level = lightTree.cutLevels; level < lightTree.levels; level += 2u) {
+    node *= 4u;
+    const vec4 worths =
+        vec4(nodeImportance(region, lightNodes[node]), nodeImportance(region, lightNodes[node + 1u]),
+             nodeImportance(region, lightNodes[node + 2u]), nodeImportance(region, lightNodes[node + 3u]));
+    const float sum = dot(worths, vec4(1.0));
+    if (!(sum > 0.0)) return Pick(0u, 0.0);
+    const uvec4 ends = endsOf(partsOf(worths, kParts / sum));
+    uint rest;
+    const uint drawn = drawBelow(bits, fresh.x, ends.w, rest);
+    const Slice slice = sliceAt(ends, drawn);
+    node += slice.index;
+    pdf *= float(slice.parts) / float(ends.w);
+    bits = restOfDraw(drawn - slice.begin, slice.parts, rest);
+    fresh = ((level - lightTree.cutLevels) & 6u) == 6u ? nextBits4(random) : fresh.yzwx;
   }
-  uint node = 1u;
-  for (uint level = 0u; level < lightTree.levels; ++level) {
-    fresh = (level & 3u) == 3u ? nextBits4(random) : fresh.yzwx;
-    const LightNode first = lightNodes[2u * node], second = lightNodes[2u * node + 1u];
-    const float a = importance(region, first.low, first.high, first.power);
-    const float b = importance(region, second.low, second.high, second.power);
-    if (!(a + b > 0.0)) return Pick(0u, 0.0);
-    const uint share = firstShare(a, b);
-    const bool taken = takesFirst(bits, share, fresh.x);
-    const float probability = float(taken ? share : 16777216u - share) * (1.0 / 16777216.0);
-    pdf *= MUTANT(81, level + 1u == lightTree.levels ? 0.5 : probability, probability);
-    node = 2u * node + (taken ? 0u : 1u);
-  }
-  const Pick pick = pickInLeaf(region, lightNodes[node].lights, random);
+  const Pick pick = pickInLeaf(region, node - (1u << lightTree.levels), bits, fresh.x);
   return Pick(pick.light, pick.pdf * pdf);
 }
 

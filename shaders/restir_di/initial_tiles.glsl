@@ -7,7 +7,7 @@
 // same picks makes them alike, not wrong.
 #include "initial_weights.glsl"
 #ifdef HAS_LIGHT_TREE
-#include "tile_region.glsl"
+#include "tile_cut.glsl"
 #endif
 #ifdef ORDERS_RAYS
 #include "ray_order.glsl"
@@ -22,7 +22,7 @@ shared uvec4 pickPower[kPicks];  // intensity, and the pick's density
 // What all picks of a tile share.
 struct Tile {
 #ifdef HAS_LIGHT_TREE
-  Region region;
+  uint total;  // of the parts of all nodes of the light tree's cut
 #endif
   float environmentPdf;  // of picking the environment, where there is one
 };
@@ -38,7 +38,7 @@ void pickForTile(Tile tile, uvec2 pixel, uint thread, uint turn) {
   // One pick in each part of the table: together they have its distribution, with less chance in how often a light comes.
   bits.x = (thread << MUTANT(34, 23u, 24u)) | (bits.x >> 8u);
 #ifdef HAS_LIGHT_TREE
-  const Pick pick = pickByPlace(tile.region, bits.x, random);
+  const Pick pick = pickByPlace(tile.total, bits.xyz, random);
   if (!(pick.pdf > 0.0)) {
     // A point without light, which is no candidate.
     pickPlace[thread] = uvec4(0u, 0u, 0u, kPlain);
@@ -68,7 +68,7 @@ float environmentPickPdf(Tile tile) {
   if (lightCount() == 0u) return 0.0;
 #ifdef HAS_LIGHT_TREE
   if (lightTree.unplaced == 0u) return 0.0;
-  return lastUnplacedPdf(tile.region);
+  return lastUnplacedPdf(tile.total > 0u);
 #else
   return mixedPdf(sceneLights[lightCount() - 1u], param_uniformShare);
 #endif
@@ -133,7 +133,9 @@ void run(uvec2 pixel) {
   uint all = lightCount() > 0u ? uint(param_candidates) : 0u;
   Tile tile;
 #ifdef HAS_LIGHT_TREE
-  if (!tileRegion(lit, surface, tile.region)) all = 0u;
+  tile.total = 0u;
+  if (gatherRegion(lit, surface)) tile.total = sumCut();
+  else all = 0u;
 #endif
 #ifdef SCENE_ENVIRONMENT
   tile.environmentPdf = environmentPickPdf(tile);

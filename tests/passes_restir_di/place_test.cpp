@@ -120,6 +120,9 @@ std::vector<Case> everyCase() {
   cases.push_back({"a sun alone", cloud(0, false)});
   addSun(cases.back().scene);
   cases.push_back({"in one place", namedLights(100)});
+  cases.push_back({"many", cloud(9000, false)});  // with levels below the cut
+  cases.push_back({"many, mixture, a sun", cloud(34000, true)});
+  addSun(cases.back().scene);
   cases.push_back({"small", cloud(100, true, 1e-4f), 1e-4f});
   cases.push_back({"large", cloud(100, false, 1e15f), 1e15f});
   cases.push_back({"dim", cloud(100, false, 1.0f, 1e-20f)});
@@ -171,40 +174,46 @@ TEST(RestirPlace, WeighsOneOverTheProbability) {
   }
 }
 
-// One pixel of each tile a frame, so that all picks are independent. Their number is a sum over tiles, whose χ² is if
-// anything too small: a false alarm has a chance of at most 1e-4 in each of the two.
-TEST(RestirPlace, PicksFollowTheirProbabilities) {
-  for (const bool mixture : {false, true}) {
-    SCOPED_TRACE(mixture ? "mixture" : "points");
-    scene::Scene scene = cloud(70, mixture);
-    if (mixture) addSun(scene);
-    constexpr uint32_t kSide = 64;
-    const View view = planeView(kSide, kSide, frontCamera());
-    PassTest t("restir_di.Initial");
-    showPicks(t, view, scene);
-    t.seed(23);
-    const scene::PreparedScene& prepared = t.prepared();
-    const scene::LightTree tree = scene::buildLightTree(prepared.lights, prepared.bounds);
-    std::vector<double> expected(prepared.lights.size() + 1, 0.0);
-    const std::vector<TileBoxes> boxes = boxesOf(view);
-    for (const TileBoxes& tile : boxes) {
-      const std::vector<double> p = LightTreeOracle(tree).probabilities(tile, prepared.lights.size());
-      for (size_t i = 0; i < p.size(); ++i) expected[i] += p[i] / static_cast<double>(boxes.size());
-    }
-    std::vector<uint64_t> counts(expected.size(), 0);
-    for (uint32_t frame = 0; frame < 250; ++frame) {
-      t.run();
-      const std::vector<Reservoir> out = t.output<Reservoir>("reservoirs");
-      for (uint32_t tile = 0; tile < boxes.size(); ++tile) {
-        const uint32_t at = hashOf(frame * 64 + tile) % (kTile * kTile);
-        const uint32_t x = tile % 4 * kTile + at % kTile, y = tile / 4 * kTile + at / kTile;
-        const Reservoir& r = out[y * kSide + x];
-        ASSERT_GT(r.weight, 0.0f) << "every light lights every pixel";
-        ++counts[lightOf(r)];
-      }
-    }
-    EXPECT_GT(chiSquareP(counts, expected), 1e-4);
+/// How often lights came up by themselves, and how often their probabilities say, in `groups` groups of lights whose
+/// numbers are alike.
+double chanceOfPicks(const scene::Scene& scene, size_t groups, uint32_t frames) {
+  constexpr uint32_t kSide = 64;
+  const View view = planeView(kSide, kSide, frontCamera());
+  PassTest t("restir_di.Initial");
+  showPicks(t, view, scene);
+  t.seed(23);
+  const scene::PreparedScene& prepared = t.prepared();
+  const scene::LightTree tree = scene::buildLightTree(prepared.lights, prepared.bounds);
+  std::vector<double> expected(groups + 1, 0.0);
+  const std::vector<TileBoxes> boxes = boxesOf(view);
+  for (const TileBoxes& tile : boxes) {
+    const std::vector<double> p = LightTreeOracle(tree).probabilities(tile, prepared.lights.size());
+    for (size_t i = 0; i < p.size(); ++i) expected[i % groups] += p[i] / static_cast<double>(boxes.size());
   }
+  std::vector<uint64_t> counts(expected.size(), 0);
+  for (uint32_t frame = 0; frame < frames; ++frame) {
+    t.run();
+    const std::vector<Reservoir> out = t.output<Reservoir>("reservoirs");
+    for (uint32_t tile = 0; tile < boxes.size(); ++tile) {
+      const uint32_t at = hashOf(frame * 64 + tile) % (kTile * kTile);
+      const uint32_t x = tile % 4 * kTile + at % kTile, y = tile / 4 * kTile + at / kTile;
+      const Reservoir& r = out[y * kSide + x];
+      EXPECT_GT(r.weight, 0.0f) << "every light lights every pixel";
+      if (r.weight > 0.0f) ++counts[lightOf(r) % groups];
+    }
+  }
+  return chiSquareP(counts, expected);
+}
+
+// One pixel of each tile a frame, so that all picks are independent. Their number is a sum over tiles, whose χ² is if
+// anything too small: a false alarm has a chance of at most 1e-4 in each.
+TEST(RestirPlace, PicksFollowTheirProbabilities) {
+  scene::Scene mixture = cloud(70, true);
+  addSun(mixture);
+  EXPECT_GT(chanceOfPicks(cloud(70, false), 70, 250), 1e-4);
+  EXPECT_GT(chanceOfPicks(mixture, 100, 250), 1e-4);
+  // With levels below the cut.
+  EXPECT_GT(chanceOfPicks(cloud(9000, false), 100, 250), 1e-4);
 }
 
 // Nothing that a tile's surfaces can see is worth anything: no candidates, and no harm.

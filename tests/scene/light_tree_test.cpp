@@ -32,6 +32,7 @@ const Many kEvery[] = {{"none"},
                        {"two points", 2},
                        {"nine points", 9},
                        {"points", 1000},
+                       {"many points", 9000},
                        {"triangles", 0, 333},
                        {"mixed", 500, 700, 3, true},
                        {"unplaced alone", 0, 0, 5, true},
@@ -39,6 +40,7 @@ const Many kEvery[] = {{"none"},
                        {"in one place", 300, 0, 0, false, 1.0f, 4.0f, false, true},
                        {"in a plane", 100, 100, 0, false, 1.0f, 0.0f, true},
                        {"powers of all sizes", 400, 100, 2, true, 1.0f, 0.0f, false, false, true},
+                       {"many of all kinds", 5000, 5000, 1, true},
                        {"tiny", 300, 300, 0, false, 1e-20f},
                        {"huge", 300, 300, 1, false, 1e20f},
                        {"far away", 300, 300, 0, false, 1.0f, 1e5f}};
@@ -95,30 +97,29 @@ TEST(LightTree, HoldsEveryLightOnce) {
     for (const int times : seen) ASSERT_EQ(times, 1);
     for (size_t i = 0; i < tree.entries.size(); ++i)
       ASSERT_EQ(hasPlace(lights[tree.entries[i].light]), i < tree.lights.size());
+    ASSERT_LE(tree.cutLevels, LightTree::kMostCutLevels);
+    ASSERT_EQ((tree.levels - tree.cutLevels) % 2, 0u);
     const size_t leaves = size_t{1} << tree.levels;
-    uint32_t next = 0;
-    for (size_t node = leaves; node < 2 * leaves && !tree.lights.empty(); ++node) {
-      const uint32_t first = tree.nodes[node].lights & ((1u << kLeafShift) - 1);
-      const uint32_t count = tree.nodes[node].lights >> kLeafShift;
-      ASSERT_EQ(first, next);
-      ASSERT_LE(count, LightTree::kMostInLeaf);
-      ASSERT_GE(count, tree.lights.size() / leaves);
+    const LightTreeOracle oracle(tree);
+    for (size_t leaf = 0; leaf < leaves && !tree.lights.empty(); ++leaf) {
+      const uint64_t first = tree.firstOf(leaf), end = tree.firstOf(leaf + 1);
+      ASSERT_GT(end, first);
+      ASSERT_LE(end - first, LightTree::kMostInLeaf);
       const double slack = 1e-6 * many.size * (1.0 + many.offset);
       double power = 0.0;
-      for (uint32_t i = first; i < first + count; ++i) {
+      for (uint64_t i = first; i < end; ++i) {
         power += tree.lights[i].power;
         const GpuLight& light = lights[tree.entries[i].light];
         const double radius = std::bit_cast<float>(tree.entries[i].bits);
         for (const glm::dvec3& corner : corners(light)) {
-          for (size_t above = node; above > 0; above /= 2)
-            ASSERT_TRUE((Box{tree.nodes[above].low, tree.nodes[above].high}).holds(corner, slack));
+          for (size_t above = leaves + leaf; above > 0; above /= 2)
+            ASSERT_TRUE(oracle.boxOf(above).holds(corner, slack));
           ASSERT_LE(glm::length(corner - glm::dvec3(tree.lights[i].centre)), radius + slack);
         }
       }
-      ASSERT_NEAR(tree.nodes[node].power, power, 1e-6 * power);
-      next += count;
+      ASSERT_NEAR(tree.nodes[leaves + leaf].power, power, 1e-6 * power);
     }
-    ASSERT_EQ(next, tree.lights.size());
+    ASSERT_EQ(tree.firstOf(leaves), tree.lights.size());
     for (size_t node = 1; node < leaves; ++node)
       ASSERT_FLOAT_EQ(tree.nodes[node].power, tree.nodes[2 * node].power + tree.nodes[2 * node + 1].power);
     const LightTree again = buildLightTree(lights, {});
@@ -136,7 +137,8 @@ TEST(LightTree, LeavesAreCompact) {
   double volume = 0.0, sides = 0.0;
   const size_t leaves = size_t{1} << tree.levels;
   for (size_t node = leaves; node < 2 * leaves; ++node) {
-    const glm::dvec3 side = glm::dvec3(tree.nodes[node].high) - glm::dvec3(tree.nodes[node].low);
+    const Box box = LightTreeOracle(tree).boxOf(node);
+    const glm::dvec3 side = box.high - box.low;
     volume += side.x * side.y * side.z;
     sides += std::max(side.x, std::max(side.y, side.z));
   }
