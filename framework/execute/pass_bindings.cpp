@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <weir/core/error.h>
 #include <weir/execute/pass_runtime.h>
+#include <weir/scene/upload_light_tree.h>
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 #include <weir/core/error.h>
 #include <weir/scene/light_tree.h>
 #include <weir/scene/upload.h>
+#include <weir/scene/upload_light_tree.h>
 
 #include <algorithm>
 #include <chrono>

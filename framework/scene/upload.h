@@ -5,7 +5,6 @@
 #include <weir/gpu/memory.h>
 #include <weir/scene/prepared.h>
 #include <weir/scene/upload_environment.h>
-#include <weir/scene/upload_light_tree.h>
 #include <weir/trace/acceleration.h>
 
 #include <array>
@@ -14,6 +13,8 @@
 #include <vector>
 
 namespace weir::scene {
+
+class LightTreeGpu;  // scene/upload_light_tree.h
 
 /// Binding numbers in set 0, as the generated prelude declares them.
 enum SceneBinding : uint32_t {

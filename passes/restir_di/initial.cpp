@@ -32,7 +32,7 @@ void Initial::describe(PassDescription& d) {
       .doc(
           "How lights are picked: by power, wherever they are, or by power and distance from what a tile of 16 x 16 "
           "pixels shows, with a light tree, for tiles alone and lights that no clip moves; auto: by place where tiles "
-          "are on and there are 4096 lights or more that have one and stay");
+          "are on and there are 1000 lights or more that have one and stay");
   d.param("tiles", "auto")
       .oneOf({"auto", "on", "off"})
       .doc(
@@ -58,7 +58,7 @@ void Initial::describe(PassDescription& d) {
 
 namespace {
 
-constexpr uint32_t kManyLights = 4096;  // from here on, places pay
+constexpr uint32_t kManyLights = 1000;  // from here on, places pay
 
 /// Whether the tiles pick lights by place. InputError where that is asked for and can't be.
 bool picksByPlace(const PrepareContext& c, bool tiled) {
