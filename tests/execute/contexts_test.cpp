@@ -55,6 +55,7 @@ TEST(Contexts, AskingForWhatIsNotDeclaredNamesPassAndName) {
   expectWords(thrown([](PrepareContext& c) { (void)c.rayKernel("any.glsl"); }),
               {"it", "own.Scripted", "scene.acceleration"});
   expectWords(thrown([](PrepareContext& c) { (void)c.lights(); }), {"it", "own.Scripted", "scene.lights"});
+  expectWords(thrown([](PrepareContext& c) { c.lightTree(); }), {"it", "own.Scripted", "scene.lights"});
   expectWords(thrown([](PrepareContext& c) { (void)c.rasterKernel("any.glsl", "nowhere"); }),
               {"it", "own.Scripted", "rasterises"});
   declaresDrawing = true;
@@ -206,7 +207,7 @@ TEST(Prelude, LeavesOutWhatIsNotDeclared) {
        {"sceneLights[]", "sceneAcceleration"}},
       {passEntry<Needs<Need::SceneLights>>("L"),
        {"sceneLights[]", "sceneAlias[]"},
-       {"sceneAcceleration", "frameIndex"}},
+       {"sceneAcceleration", "frameIndex", "lightNodes"}},
       {passEntry<Needs<Need::FrameCamera>>("C"),
        {"Camera camera;"},
        {"Camera previousCamera;", "scenePositions", "frameSeed"}},
