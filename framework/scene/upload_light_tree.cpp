@@ -31,7 +31,8 @@ void LightTreeGpu::update(const gpu::Device& device, const PreparedScene& prepar
   const LightTreeGpu fresh(device, prepared);
   device.submitAndWait([&](VkCommandBuffer commands) {
     gpu::fullBarrier(commands);
-    for (const auto& [from, to] : {std::pair(&fresh.nodes_, &nodes_), {&fresh.lights_, &lights_}, {&fresh.entries_, &entries_}}) {
+    for (const auto& [from, to] :
+         {std::pair(&fresh.nodes_, &nodes_), {&fresh.lights_, &lights_}, {&fresh.entries_, &entries_}}) {
       const VkBufferCopy all{0, 0, to->size()};
       vkCmdCopyBuffer(commands, from->handle(), to->handle(), 1, &all);
     }

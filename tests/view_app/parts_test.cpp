@@ -1,4 +1,5 @@
-// The window's smaller parts: where panels lie, figures of times, recent files, scenes that are read beside it, messages.
+// The window's smaller parts: where panels lie, figures of times, recent files, scenes that are read beside it,
+// messages.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,11 +18,13 @@ namespace weir::view {
 namespace {
 
 TEST(Layout, PanelsAndPictureFillTheWindowWithoutOverlap) {
-  for (const glm::vec2 window : {glm::vec2(1280, 720), glm::vec2(3840, 2160), glm::vec2(320, 240), glm::vec2(500, 900)}) {
+  for (const glm::vec2 window :
+       {glm::vec2(1280, 720), glm::vec2(3840, 2160), glm::vec2(320, 240), glm::vec2(500, 900)}) {
     for (const float scale : {1.0f, 2.0f}) {
       const Layout layout = layoutOf(window, 20.0f * scale, scale, LayoutState{});
       const auto area = [](const Rectangle& r) { return r.size().x * r.size().y; };
-      EXPECT_NEAR(area(layout.picture) + area(layout.graph) + area(layout.side) + area(layout.times), window.x * (window.y - 20.0f * scale), 1.0f);
+      EXPECT_NEAR(area(layout.picture) + area(layout.graph) + area(layout.side) + area(layout.times),
+                  window.x * (window.y - 20.0f * scale), 1.0f);
       EXPECT_GE(layout.picture.size().x, window.x / 3.0f - 1.0f);
       EXPECT_GT(layout.picture.size().y, window.y / 3.0f);
       EXPECT_EQ(layout.graph.high.x, layout.picture.low.x);
@@ -146,7 +149,8 @@ TEST(Messages, ANewerOneOfItsTopicTakesTheOldOnesPlace) {
   EXPECT_EQ(messages.all()[0].topic, "error");
   for (int i = 0; i < 100; ++i) messages.add(i == 50 ? Severity::Error : Severity::Info, std::to_string(i), "x");
   EXPECT_LE(messages.all().size(), 20u);
-  EXPECT_TRUE(std::any_of(messages.all().begin(), messages.all().end(), [](const Message& m) { return m.severity == Severity::Error; }));
+  EXPECT_TRUE(std::any_of(messages.all().begin(), messages.all().end(),
+                          [](const Message& m) { return m.severity == Severity::Error; }));
 }
 
 }  // namespace

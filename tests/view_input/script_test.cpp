@@ -21,7 +21,8 @@ std::string errorOf(const std::string& text) {
 }
 
 TEST(Script, ReadsWordsQuotesAndComments) {
-  const std::vector<ScriptStep> steps = parseScript("# nothing\n\nclick a/b # here\nset x \"1 \\\"2\\\" \\\\ \\n\"\r\n\tquit", "s");
+  const std::vector<ScriptStep> steps =
+      parseScript("# nothing\n\nclick a/b # here\nset x \"1 \\\"2\\\" \\\\ \\n\"\r\n\tquit", "s");
   ASSERT_EQ(steps.size(), 3u);
   EXPECT_EQ(steps[0].command, "click");
   EXPECT_EQ(steps[0].words, std::vector<std::string>{"a/b"});
@@ -31,7 +32,8 @@ TEST(Script, ReadsWordsQuotesAndComments) {
 }
 
 TEST(Script, SaysWhereAndWhatIsWrong) {
-  EXPECT_NE(errorOf("click a\nclck b").find("s.script:2: 'clck' is not known; nearest is 'click'"), std::string::npos) << errorOf("click a\nclck b");
+  EXPECT_NE(errorOf("click a\nclck b").find("s.script:2: 'clck' is not known; nearest is 'click'"), std::string::npos)
+      << errorOf("click a\nclck b");
   EXPECT_NE(errorOf("click").find("s.script:1: 'click' takes 1 words, not 0"), std::string::npos);
   EXPECT_NE(errorOf("wait soon").find("'soon' is no number"), std::string::npos);
   EXPECT_NE(errorOf("text \"open").find("not closed"), std::string::npos);
@@ -94,7 +96,8 @@ TEST(Script, WaitsForWhatComesAndGivesUpOnWhatDoesNot) {
 TEST(Script, MessagesAreExpectedByAPartOfTheirText) {
   Stand stand;
   stand.messages = {"shader: shade.glsl:3: syntax error"};
-  ScriptPlayer player(parseScript("expect-message shade.glsl\nexpect-no-messages", "s"), "s", stand.marks, stand.host());
+  ScriptPlayer player(parseScript("expect-message shade.glsl\nexpect-no-messages", "s"), "s", stand.marks,
+                      stand.host());
   EXPECT_THROW(
       {
         for (int i = 0; i < 1000; ++i) player.next();

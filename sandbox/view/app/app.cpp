@@ -301,7 +301,8 @@ void App::followScene() {
   std::string all;
   for (const std::string& warning : warnings) all += (all.empty() ? "" : "\n") + warning;
   if (engine_->stage().prepared.lights.empty())
-    all += (all.empty() ? "" : "\n") + std::string("the scene has no lights: the picture is black (Scene panel, Lights)");
+    all +=
+        (all.empty() ? "" : "\n") + std::string("the scene has no lights: the picture is black (Scene panel, Lights)");
   if (!all.empty()) messages_.add(Severity::Warning, "scene", all);
   sceneChanged();
   graphChanged();

@@ -132,8 +132,9 @@ void App::openGraph(const std::string& file) {
     Document document = Document::load(file);
     // What is not saved stays where it is: a graph that is dropped on the window does not take it away.
     if (document_.changed())
-      throw InputError(document_.file() +
-                       " has changes that are not saved: save them (Ctrl+S) or undo them (Ctrl+Z) before another graph is opened");
+      throw InputError(
+          document_.file() +
+          " has changes that are not saved: save them (Ctrl+S) or undo them (Ctrl+Z) before another graph is opened");
     engine_->openGraph(file, document.text());
     document_ = std::move(document);
   });

@@ -258,7 +258,8 @@ void PictureView::drawBeside(VkCommandBuffer commands, const gpu::Image& canvas,
   }
   if (resource == nullptr) return;
   const auto type = std::tuple(resource->type.kind, resource->type.layout.hash, resource->type.format, meaning);
-  if (besideChannels_.empty() || type != besideType_) besideChannels_ = channelsOf(*resource, meaning, engine.stage().prepared.traits.f90);
+  if (besideChannels_.empty() || type != besideType_)
+    besideChannels_ = channelsOf(*resource, meaning, engine.stage().prepared.traits.f90);
   besideType_ = type;
   if (besideChannels_.empty()) return;
   const Channel* channel = a_.channels.empty() ? nullptr : findChannel(besideChannels_, a_.channels[a_.channel].name);
