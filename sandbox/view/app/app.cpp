@@ -181,7 +181,7 @@ void App::drawUi() {
     platform_->setScale(scale_);
     presenter_->renewFonts();
   }
-  marks_.begin();
+  marks_.begin(script_ && script_->looks());
   platform_->beginFrame(glm::vec2(size), glm::vec2(pixels) / glm::max(glm::vec2(size), 1.0f), frameSeconds_);
   Ui ui{marks_, scale_};
   if (layoutState_.all) {

@@ -66,6 +66,8 @@ class ScriptPlayer {
 
   /// Before each frame of the window: the events that it gets. Throws RuntimeError when a step can't be done.
   std::vector<Event> next();
+  /// Whether the next call looks at the marks of the frame before it.
+  bool looks() const { return queue_.empty(); }
   bool done() const { return at_ >= steps_.size() && queue_.empty(); }
 
  private:

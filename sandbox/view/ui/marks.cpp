@@ -4,13 +4,15 @@
 
 namespace weir::view {
 
-void Marks::begin() {
+void Marks::begin(bool looked) {
+  looked_ = wanted_ && looked;
+  if (!looked_) return;
   found_.clear();
   scope_.clear();
 }
 
 void Marks::last(std::string_view name) {
-  if (!wanted_) return;
+  if (!looked_) return;
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   const std::string whole = scope_ + std::string(name);
   found_[whole] = {{{low.x, low.y}, {high.x, high.y}}, ImGui::IsItemVisible()};
@@ -21,11 +23,11 @@ void Marks::last(std::string_view name) {
 }
 
 void Marks::place(std::string_view name, const Rectangle& where) {
-  if (wanted_) found_[scope_ + std::string(name)] = {where, true};
+  if (looked_) found_[scope_ + std::string(name)] = {where, true};
 }
 
 Marks::Scope::Scope(Marks& marks, std::string_view name) : marks_(marks), length_(marks.scope_.size()) {
-  if (marks.wanted_) (marks.scope_ += name) += '/';
+  if (marks.looked_) (marks.scope_ += name) += '/';
 }
 
 Marks::Scope::~Scope() {

@@ -22,10 +22,11 @@ struct Rectangle {
 class Marks {
  public:
   /// Nobody asks for names unless a script runs: then they cost nothing.
-  explicit Marks(bool wanted) : wanted_(wanted) {}
+  explicit Marks(bool wanted) : wanted_(wanted), looked_(wanted) {}
 
-  /// At a frame's beginning: forgets where things were.
-  void begin();
+  /// At a frame's beginning: forgets where things were. Not `looked` at: names cost nothing in this frame, and what
+  /// was found before stays.
+  void begin(bool looked = true);
 
   /// Names the widget that ImGui drew last, below the scopes that are open.
   void last(std::string_view name);
@@ -56,7 +57,7 @@ class Marks {
   std::vector<std::string> names() const;
 
  private:
-  bool wanted_;
+  bool wanted_, looked_ = true;
   std::string scope_, revealed_;
   std::map<std::string, Found, std::less<>> found_;
 };

@@ -98,6 +98,7 @@ Window::Window(const WindowSystem&, const std::string& title, glm::ivec2 size) {
   glfwSetWindowUserPointer(handle_, this);
   glfwSetWindowSizeLimits(handle_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
   listen();
+  look();
 }
 
 Window::~Window() {
@@ -166,32 +167,22 @@ void Window::poll(double seconds) {
     glfwWaitEventsTimeout(seconds);
   else
     glfwPollEvents();
+  look();
 }
 
 std::vector<Event> Window::takeEvents() {
   return std::exchange(events_, {});
 }
 
-glm::ivec2 Window::size() const {
-  glm::ivec2 size(0);
-  glfwGetWindowSize(handle_, &size.x, &size.y);
-  return size;
-}
-
-glm::ivec2 Window::framebufferSize() const {
-  glm::ivec2 size(0);
-  glfwGetFramebufferSize(handle_, &size.x, &size.y);
-  return glfwGetWindowAttrib(handle_, GLFW_ICONIFIED) != GLFW_FALSE ? glm::ivec2(0) : size;
-}
-
-float Window::contentScale() const {
+void Window::look() {
+  glfwGetWindowSize(handle_, &size_.x, &size_.y);
+  glfwGetFramebufferSize(handle_, &pixels_.x, &pixels_.y);
+  // Where the framebuffer is larger than the window already, ImGui's own framebuffer scale sees to it.
+  const float drawn = size_.x > 0 && pixels_.x > 0 ? static_cast<float>(pixels_.x) / static_cast<float>(size_.x) : 1.0f;
   glm::vec2 scale(1.0f);
   glfwGetWindowContentScale(handle_, &scale.x, &scale.y);
-  // Where the framebuffer is larger than the window already, ImGui's own framebuffer scale sees to it.
-  const glm::ivec2 window = size(), framebuffer = framebufferSize();
-  const float drawn =
-      window.x > 0 && framebuffer.x > 0 ? static_cast<float>(framebuffer.x) / static_cast<float>(window.x) : 1.0f;
-  return std::clamp(scale.x / drawn, 0.5f, 4.0f);
+  scale_ = std::clamp(scale.x / drawn, 0.5f, 4.0f);
+  if (glfwGetWindowAttrib(handle_, GLFW_ICONIFIED) != GLFW_FALSE) pixels_ = glm::ivec2(0);
 }
 
 void Window::setSize(glm::ivec2 size) {

@@ -41,9 +41,10 @@ class Window {
   void poll(double seconds = 0.0);
   std::vector<Event> takeEvents();
 
-  glm::ivec2 size() const;             ///< window coordinates
-  glm::ivec2 framebufferSize() const;  ///< pixels; 0 while minimised
-  float contentScale() const;          ///< of the display that it is on
+  // As of the last poll(): each would ask the window system and wait for its answer.
+  glm::ivec2 size() const { return size_; }               ///< window coordinates
+  glm::ivec2 framebufferSize() const { return pixels_; }  ///< 0 while minimised
+  float contentScale() const { return scale_; }           ///< of the display that it is on
   void setSize(glm::ivec2 size);
   void setTitle(const std::string& title);
   /// ImGui's number of the shape (ImGuiMouseCursor_); below 0: none.
@@ -55,11 +56,14 @@ class Window {
  private:
   static Window& of(GLFWwindow* handle);
   void listen();
+  void look();
 
   GLFWwindow* handle_ = nullptr;
   std::vector<Event> events_;
   std::vector<GLFWcursor*> cursors_;
   int cursor_ = -2;
+  glm::ivec2 size_{0}, pixels_{0};
+  float scale_ = 1.0f;
 };
 
 }  // namespace weir::view
