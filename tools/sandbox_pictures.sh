@@ -33,6 +33,7 @@ set graph/spatial/radius 20
 until-frames 130
 wait 10
 click compare/show-reference
+point picture
 wait 4
 shoot $out/sandbox-compare.png
 click compare/none
