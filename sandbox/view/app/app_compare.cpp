@@ -18,11 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-template <typename... Cases>
-struct Each : Cases... {
-  using Cases::operator()...;
-};
-
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> App::bundledReferences() {

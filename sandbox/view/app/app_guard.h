@@ -1,4 +1,4 @@
-// App::guard, for the files that the class is spread over.
+// App::guard and what else is shared by the files that the class is spread over.
 #pragma once
 
 #include "view/app/app.h"
@@ -6,6 +6,12 @@
 #include <exception>
 
 namespace weir::view {
+
+/// One function of a case for each thing that a variant can be.
+template <typename... Cases>
+struct Each : Cases... {
+  using Cases::operator()...;
+};
 
 template <typename Work>
 bool App::guard(const std::string& topic, Work work) {

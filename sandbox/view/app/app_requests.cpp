@@ -18,11 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-template <typename... Cases>
-struct Each : Cases... {
-  using Cases::operator()...;
-};
-
 }  // namespace
 
 void App::carryOut(const Request& request) {
