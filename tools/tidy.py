@@ -5,17 +5,25 @@
 
 A file that passed is not looked at again until it, a header that it includes, its compile command, .clang-tidy or
 clang-tidy itself changes: .cache/clang-tidy/ holds one empty file for each such combination. Exit status 1: findings.
+
+Headers take most of the time, so the files of a folder that are compiled alike are looked at as one text, their headers
+read once. Files that something is said of, which may be no more than that two give different things the same name, are
+then looked at apart from the others: only what is said of a file by itself counts.
 """
 import argparse
+import bisect
+import collections
 import concurrent.futures
 import functools
 import hashlib
 import json
 import os
+import re
 import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -25,6 +33,7 @@ FOLDERS = ("framework", "passes", "plugins", "sandbox")
 SKIPPED = {"framework/gpu/vma.cpp", "framework/gpu/volk.cpp"}
 # g++ knows these, clang 14 doesn't.
 DROPPED_FLAGS = {"-fno-gnu-unique"}
+MOST_TOGETHER = 16
 
 
 def clang_tidy():
@@ -74,10 +83,70 @@ def digest(path):
 
 
 def key(name, words, sources, general):
-    own = os.path.join(ROOT, name.split(os.sep)[0], ".clang-tidy")  # a folder may leave out checks
-    text = [general, digest(own) if os.path.exists(own) else "", " ".join(words).replace(ROOT, "."), name, digest(os.path.join(ROOT, name))]
+    text = [general, " ".join(words).replace(ROOT, "."), name, digest(os.path.join(ROOT, name))]
+    folder = os.path.dirname(name)
+    while folder:  # any folder may leave out checks
+        own = os.path.join(ROOT, folder, ".clang-tidy")
+        text.append(digest(own) if os.path.exists(own) else "")
+        folder = os.path.dirname(folder)
     text += sorted(f"{os.path.relpath(os.path.realpath(s), ROOT)} {digest(s)}" for s in sources)
     return hashlib.sha256("\n".join(text).encode()).hexdigest()
+
+
+def own_names(name):
+    """What a file seems to define in its unnamed namespaces: functions with what they take."""
+    with open(os.path.join(ROOT, name), encoding="utf-8") as file:
+        parts = re.findall(r"^namespace \{\n(.*?)^\}  // namespace$", file.read(), re.DOTALL | re.MULTILINE)
+    definition = r"^(?!using |namespace |template|//|#|\})[\w:<][\w:<>,*&\[\] ]*?\b(\w+)\s*(?:[{=;]|\[|: |(\(.*))"
+    return set(re.findall(definition, "\n".join(parts), re.MULTILINE))
+
+
+def batches(pending, database):
+    """The files to look at, as lists of those that lie in one folder, are compiled alike, and define no name twice."""
+    alike = collections.defaultdict(list)
+    for name in pending:
+        words = database[name][0]
+        alike[os.path.dirname(name), " ".join(words[:words.index("-o")])].append(name)
+    for names in alike.values():
+        parts = []
+        for name in names:
+            own = own_names(name)
+            part = next((p for p in parts if len(p[0]) < MOST_TOGETHER and not p[1] & own), None)
+            if part is None:
+                part = ([], set())
+                parts.append(part)
+            part[0].append(name)
+            part[1].update(own)
+        yield from (part[0] for part in parts)
+
+
+def together(names, words, build, place):
+    """clang-tidy's arguments for `names` as one text, and the last line of each in it. The text is a file that is in
+    their folder for clang-tidy alone, so that includes and .clang-tidy are found as from there."""
+    text, lines = "", []
+    for number, name in enumerate(names):
+        with open(os.path.join(ROOT, name), encoding="utf-8") as file:
+            # A macro's definition makes readability-duplicate-include forget what was included before.
+            text += f"#define WEIR_LINTED_{number}\n{file.read()}\n"
+            lines.append(text.count("\n"))
+    folder = os.path.join(ROOT, os.path.dirname(names[0]))
+    shown = os.path.join(folder, "lint_together.cpp")
+    stored = os.path.join(place, "text.cpp")
+    words = [shown if os.path.realpath(os.path.join(build, w)) == os.path.join(ROOT, names[0]) else w for w in words]
+    overlay = {"version": 0, "use-external-names": False, "roots": [{"name": folder, "type": "directory", "contents": [
+        {"name": os.path.basename(shown), "type": "file", "external-contents": stored}]}]}
+    for file, content in ((stored, text), (os.path.join(place, "overlay.yaml"), json.dumps(overlay)),
+                          (os.path.join(place, "compile_commands.json"),
+                           json.dumps([{"directory": build, "file": shown, "arguments": words}]))):
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(content)
+    return ["-p", place, "--vfsoverlay", os.path.join(place, "overlay.yaml"), shown], lines
+
+
+def named(said, names, lines):
+    """Which of the files of one text are spoken of."""
+    places = [int(line) for line in re.findall(r"lint_together\.cpp:(\d+):\d+: (?:error|warning)", said)]
+    return {names[bisect.bisect_left(lines, place)] for place in places if place <= lines[-1]}
 
 
 def main():
@@ -99,21 +168,38 @@ def main():
     pending = [name for name, stamp in stamps.items() if not os.path.exists(stamp)]
     print(f"clang-tidy: {len(pending)} of {len(stamps)} files to look at", flush=True)
 
-    def look(name):
+    def look(names):
+        """Yields each file with what clang-tidy says of it, None: nothing."""
+        alone = len(names) == 1
+        with tempfile.TemporaryDirectory() as place:
+            arguments, lines = (["-p", CACHE, os.path.join(ROOT, names[0])], []) if alone else together(names, database[names[0]][0], build, place)
+            run = subprocess.run([program, "--quiet", *arguments], capture_output=True, text=True)
+        if run.returncode == 0 or alone:
+            for name in names:
+                yield name, None if run.returncode == 0 else run.stdout.strip() or run.stderr
+            return
+        apart = named(run.stdout, names, lines) or set(names)
+        for name in sorted(apart):
+            yield from look([name])
+        if len(apart) < len(names):
+            yield from look([name for name in names if name not in apart])
+
+    def timed(names):
         start = time.monotonic()
-        run = subprocess.run([program, "-p", CACHE, "--quiet", os.path.join(ROOT, name)], capture_output=True, text=True)
-        return name, run, time.monotonic() - start
+        return list(look(names)), time.monotonic() - start
 
     bad, done = [], 0
+    work = sorted(batches(pending, database), key=len, reverse=True)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for name, run, seconds in pool.map(look, pending):
-            done += 1
-            print(f"[{done}/{len(pending)}] {seconds:5.1f} s {name}", flush=True)
-            if run.returncode == 0:
-                open(stamps[name], "w", encoding="utf-8").close()
-            else:
-                bad.append(name)
-                print(run.stdout + ("" if run.stdout.strip() else run.stderr), flush=True)
+        for said, seconds in pool.map(timed, work):
+            done += len(said)
+            print(f"[{done}/{len(pending)}] {seconds:5.1f} s {said[0][0]}" + (f" and {len(said) - 1} more" if said[1:] else ""), flush=True)
+            for name, findings in said:
+                if findings is None:
+                    open(stamps[name], "w", encoding="utf-8").close()
+                else:
+                    bad.append(name)
+                    print(findings, flush=True)
 
     # What no file of today stands for any more, and is a month old, goes.
     current = set(stamps.values())

@@ -15,7 +15,7 @@
 namespace weir::image {
 namespace {
 
-using Colour = std::array<float, 3>;
+using Rgb = std::array<float, 3>;
 using Matrix = std::array<std::array<double, 3>, 3>;
 
 constexpr float kColourExponent = 0.7f;    // q_c, compresses large colour differences
@@ -40,8 +40,8 @@ Matrix inverse(const Matrix& m) {
   return result;
 }
 
-Colour multiply(const Matrix& m, const Colour& v) {
-  Colour result;
+Rgb multiply(const Matrix& m, const Rgb& v) {
+  Rgb result;
   for (size_t r = 0; r < 3; ++r) result[r] = float(m[r][0] * v[0] + m[r][1] * v[1] + m[r][2] * v[2]);
   return result;
 }
@@ -49,7 +49,7 @@ Colour multiply(const Matrix& m, const Colour& v) {
 /// Linear Rec.709 to XYZ relative to the white point (Y of white is 1), from the primaries and D65 of BT.709-6.
 struct ColourSpace {
   Matrix toXyz, toRgb;
-  Colour white;
+  Rgb white;
 
   ColourSpace() {
     constexpr double primaries[3][2] = {{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}}, w[2] = {0.3127, 0.3290};
@@ -70,19 +70,19 @@ struct ColourSpace {
   }
 
   /// Section 4.1.1: the linearised CIELAB that the contrast sensitivity functions were measured in.
-  Colour toOpponent(const Colour& rgb) const {
-    Colour xyz = multiply(toXyz, rgb);
+  Rgb toOpponent(const Rgb& rgb) const {
+    Rgb xyz = multiply(toXyz, rgb);
     for (size_t c = 0; c < 3; ++c) xyz[c] /= white[c];
     return {116.0f * xyz[1] - 16.0f, 500.0f * (xyz[0] - xyz[1]), 200.0f * (xyz[1] - xyz[2])};
   }
-  Colour fromOpponent(const Colour& o) const {
+  Rgb fromOpponent(const Rgb& o) const {
     const float y = (o[0] + 16.0f) / 116.0f;
     return multiply(toRgb, {(o[1] / 500.0f + y) * white[0], y * white[1], (y - o[2] / 200.0f) * white[2]});
   }
 
   /// CIELAB with the Hunt adjustment of section 4.1.2: colours of dark pixels look less colourful.
-  Colour toHuntLab(const Colour& rgb) const {
-    const Colour xyz = multiply(toXyz, rgb);
+  Rgb toHuntLab(const Rgb& rgb) const {
+    const Rgb xyz = multiply(toXyz, rgb);
     const auto f = [](float t) {
       constexpr float d = 6.0f / 29.0f;
       return t > d * d * d ? std::cbrt(t) : t / (3.0f * d * d) + 4.0f / 29.0f;
@@ -94,7 +94,7 @@ struct ColourSpace {
 };
 
 /// HyAB distance (Abasi et al. 2020), compressed: section 4.1.3.
-float colourDistance(const Colour& a, const Colour& b) {
+float colourDistance(const Rgb& a, const Rgb& b) {
   return std::pow(std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]), kColourExponent);
 }
 
@@ -120,16 +120,16 @@ struct Aces {
 
 /// What one picture brings into the comparison.
 struct Prepared {
-  std::vector<Colour> lab;  // filtered by contrast sensitivity, Hunt-adjusted
+  std::vector<Rgb> lab;  // filtered by contrast sensitivity, Hunt-adjusted
   Features features;
 };
 
-Prepared prepare(const std::vector<Colour>& linear, uint32_t width, uint32_t height, const ColourSpace& space,
+Prepared prepare(const std::vector<Rgb>& linear, uint32_t width, uint32_t height, const ColourSpace& space,
                  const FlipKernels& kernels) {
   Plane planes[3] = {Plane(width, height), Plane(width, height), Plane(width, height)};
   Plane lightness(width, height);
   for (size_t i = 0; i < linear.size(); ++i) {
-    const Colour o = space.toOpponent(linear[i]);
+    const Rgb o = space.toOpponent(linear[i]);
     for (size_t c = 0; c < 3; ++c) planes[c].values[i] = o[c];
     lightness.values[i] = (o[0] + 16.0f) / 116.0f;
   }
@@ -138,7 +138,7 @@ Prepared prepare(const std::vector<Colour>& linear, uint32_t width, uint32_t hei
   for (size_t c = 0; c < 3; ++c) planes[c] = applySensitivity(planes[c], kernels.sensitivity[c]);
   result.lab.resize(linear.size());
   for (size_t i = 0; i < linear.size(); ++i) {
-    Colour rgb = space.fromOpponent({planes[0].values[i], planes[1].values[i], planes[2].values[i]});
+    Rgb rgb = space.fromOpponent({planes[0].values[i], planes[1].values[i], planes[2].values[i]});
     for (float& v : rgb) v = std::clamp(v, 0.0f, 1.0f);
     result.lab[i] = space.toHuntLab(rgb);
   }
@@ -146,7 +146,7 @@ Prepared prepare(const std::vector<Colour>& linear, uint32_t width, uint32_t hei
 }
 
 /// Sections 4.1.3, 4.2 and 4.3, of linear pictures in [0,1].
-std::vector<float> compare(const std::vector<Colour>& test, const std::vector<Colour>& reference, uint32_t width,
+std::vector<float> compare(const std::vector<Rgb>& test, const std::vector<Rgb>& reference, uint32_t width,
                            uint32_t height, const ColourSpace& space, const FlipKernels& kernels) {
   // The two pictures do not meet before both are filtered, so each has a thread.
   auto other = std::async(std::launch::async, [&] { return prepare(reference, width, height, space, kernels); });
@@ -182,8 +182,8 @@ void require(const Picture& test, const Picture& reference, double pixelsPerDegr
 }
 
 template <class Map>
-std::vector<Colour> mapped(const Picture& picture, const Map& map) {
-  std::vector<Colour> result(size_t{picture.width} * picture.height);
+std::vector<Rgb> mapped(const Picture& picture, const Map& map) {
+  std::vector<Rgb> result(size_t{picture.width} * picture.height);
   for (size_t i = 0; i < result.size(); ++i) {
     for (size_t c = 0; c < 3; ++c) result[i][c] = map(picture.rgba[4 * i + c]);
   }
