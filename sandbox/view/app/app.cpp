@@ -340,7 +340,7 @@ void App::writeMeasurement(const std::string& file) {
   nlohmann::ordered_json json;
   json["frames"] = ui.size();
   const auto at = [&](double share) {
-    return ui.empty() ? 0.0 : ui[static_cast<size_t>(share * static_cast<double>(ui.size() - 1) + 0.5)];
+    return ui.empty() ? 0.0 : ui[static_cast<size_t>(std::lround(share * static_cast<double>(ui.size() - 1)))];
   };
   json["ui_cpu_ms"] = {{"median", at(0.5)}, {"p95", at(0.95)}, {"p99", at(0.99)}, {"most", at(1.0)}};
   json["window"] = {window_.size().x, window_.size().y};

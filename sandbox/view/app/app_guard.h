@@ -12,6 +12,9 @@ template <typename... Cases>
 struct Each : Cases... {
   using Cases::operator()...;
 };
+// The guide is the language's own from C++20 on; clang 14, which lints, has not learnt it.
+template <typename... Cases>
+Each(Cases...) -> Each<Cases...>;
 
 template <typename Work>
 bool App::guard(const std::string& topic, Work work) {

@@ -12,7 +12,7 @@
 namespace weir::view {
 namespace {
 
-void wrapped(ImU32 color, const std::string& text) {
+void paragraph(ImU32 color, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(0.0f);
   ImGui::TextUnformatted(text.c_str());
@@ -44,11 +44,11 @@ void chooseReference(Ui& ui, const ComparePanelModel& model, ComparePanelResult&
 
 void reference(Ui& ui, const ComparePanelModel& model, ComparePanelResult& result) {
   const ComparisonState& state = *model.state;
-  if (!state.problem.empty()) wrapped(palette().bad, state.problem);
+  if (!state.problem.empty()) paragraph(palette().bad, state.problem);
   if (!state.compares) return;
-  wrapped(ImGui::GetColorU32(ImGuiCol_Text), state.words);
+  paragraph(ImGui::GetColorU32(ImGuiCol_Text), state.words);
   ui.marks.last("words");
-  if (!state.warning.empty()) wrapped(palette().warning, state.warning);
+  if (!state.warning.empty()) paragraph(palette().warning, state.warning);
   auto budget = static_cast<float>(state.budget);
   if (ImGui::SliderFloat("spared", &budget, 0.0f, 50.0f, "%.1f ms"))
     result.budget = static_cast<double>(std::clamp(budget, 0.0f, 1000.0f));
@@ -81,7 +81,7 @@ void figures(Ui& ui, const ComparisonState& state, ComparePanelResult& result) {
     return;
   }
   const ErrorFigures& e = *state.error;
-  if (!e.problem.empty()) return wrapped(palette().bad, e.problem);
+  if (!e.problem.empty()) return paragraph(palette().bad, e.problem);
   if (ImGui::BeginTable("figures", 2, ImGuiTableFlags_SizingFixedFit)) {
     row(ui, "relMSE", "%.4g", e.relMse, "mean of (a - b)² / (b² + 0.01) over pixels and colours");
     row(ui, "trimmed", "%.4g", e.relMseTrimmed, "relMSE without the worst 0.1 % of pixels");
@@ -95,11 +95,11 @@ void figures(Ui& ui, const ComparisonState& state, ComparePanelResult& result) {
   }
   // Of what is measured the reference's own error is a part.
   if (std::isfinite(e.referenceRelMse) && e.relMse < 2.0 * e.referenceRelMse)
-    wrapped(palette().warning, "most of that may be the reference's own noise");
+    paragraph(palette().warning, "most of that may be the reference's own noise");
   if (e.nonFinite > 0)
     ImGui::TextColored(ImColor(palette().bad), "%llu pixels are not finite",
                        static_cast<unsigned long long>(e.nonFinite));
-  if (state.flip && !state.flip->problem.empty()) wrapped(palette().bad, "FLIP: " + state.flip->problem);
+  if (state.flip && !state.flip->problem.empty()) paragraph(palette().bad, "FLIP: " + state.flip->problem);
   bool flip = state.flips;
   if (ImGui::Checkbox("FLIP", &flip)) result.flip = flip;
   ui.marks.last("flip");

@@ -1,6 +1,7 @@
 #include "view/panels/time_panel.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace weir::view {
@@ -9,7 +10,7 @@ namespace {
 TimeLog::Figures figuresOf(std::vector<float>& values) {
   if (values.empty()) return {};
   const auto at = [&](double share) {
-    const auto place = static_cast<size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+    const auto place = static_cast<size_t>(std::lround(share * static_cast<double>(values.size() - 1)));
     std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(place));
     return values[place];
   };

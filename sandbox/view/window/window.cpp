@@ -11,10 +11,6 @@
 #include <cmath>
 #include <utility>
 
-// Vulkan's types are there, so GLFW would declare this itself if it had found vulkan.h in its own way.
-extern "C" VkResult glfwCreateWindowSurface(VkInstance instance, GLFWwindow* window,
-                                            const VkAllocationCallbacks* allocator, VkSurfaceKHR* surface);
-
 namespace weir::view {
 namespace {
 
