@@ -119,13 +119,11 @@ float lightImportance(Region region, uint light) {
   return importance(region, (placed.xyz - region.middle) * lightTree.unit, vec3(radius), placed.w);
 }
 
-// Of up to four lights from `first` on; those that aren't there are worth nothing.
-vec4 lightImportances(Region region, uint first, uint count) {
-  vec4 worths = vec4(lightImportance(region, first), 0.0, 0.0, 0.0);
-  if (count > 1u) worths.y = lightImportance(region, first + 1u);
-  if (count > 2u) worths.z = lightImportance(region, first + 2u);
-  if (count > 3u) worths.w = lightImportance(region, first + 3u);
-  return worths;
+// Of four lights from `first` on; those beyond `last` are worth nothing. None is left out, so that all are read at the same time.
+vec4 lightImportances(Region region, uint first, uint last) {
+  const vec4 worths = vec4(lightImportance(region, min(first, last)), lightImportance(region, min(first + 1u, last)),
+                           lightImportance(region, min(first + 2u, last)), lightImportance(region, min(first + 3u, last)));
+  return mix(vec4(0.0), worths, lessThanEqual(first + uvec4(0u, 1u, 2u, 3u), uvec4(last)));
 }
 
 // In whole parts, of which whatever is worth anything has one at least: so many of all parts are a chance, and what a pick is divided by.
@@ -148,8 +146,7 @@ Slice sliceAt(uvec4 ends, uint drawn) {
 // One of a leaf's lights.
 Pick pickInLeaf(Region region, uint leaf, uint bits, uint fresh) {
   const uint first = firstOfLeaf(leaf), count = firstOfLeaf(leaf + 1u) - first;
-  const vec4 some = lightImportances(region, first, count);
-  const vec4 rest = count > 4u ? lightImportances(region, first + 4u, count - 4u) : vec4(0.0);
+  const vec4 some = lightImportances(region, first, first + count - 1u), rest = lightImportances(region, first + 4u, first + count - 1u);
   const float sum = dot(some, vec4(1.0)) + dot(rest, vec4(1.0));
   if (!(sum > 0.0)) return Pick(0u, 0.0);
   const uvec4 ends = endsOf(partsOf(some, kParts / sum)), restEnds = endsOf(partsOf(rest, kParts / sum));

@@ -1,6 +1,7 @@
-// Initial candidates by streaming RIS, as in initial.glsl, drawn by tiles of 16 × 16 pixels together: each pixel picks one light, and all
-// of the tile look through the picks in shared memory. A pixel then reads the light table once instead of M times, so that its size hardly
-// matters (presampled tiles, Wyman and Panteleev 2021, without the pass before), and its picks are spread over the whole table.
+// Initial candidates by streaming RIS, as in initial.glsl, drawn by tiles of 16 × 16 pixels together: each pixel, or every other one,
+// picks one light, and all of the tile look through the picks in shared memory. A pixel then reads the light table once instead of M
+// times, so that its size hardly matters (presampled tiles, Wyman and Panteleev 2021, without the pass before), and its picks are spread
+// over the whole table.
 //
 // Every pick has the density of pickMixed(), or of pickByPlace() for what the tile's surfaces span, and each pixel looks at M of them
 // whose numbers in the tile are uniform, so that the sum of its weights is unbiased as with picks of its own. That neighbours look at the
@@ -13,7 +14,12 @@
 #include "ray_order.glsl"
 #endif
 
-const uint kPicks = 256u;
+#ifdef HAS_LIGHT_TREE
+const uint kPickBits = 7u;  // a pick by place costs far more than looks at it, and twice as many find hardly more
+#else
+const uint kPickBits = 8u;
+#endif
+const uint kPicks = 1u << kPickBits;
 const uint kPlain = 0x80000000u;  // a point light without a range: position and intensity are all there is to it
 
 shared uvec4 pickPlace[kPicks];  // position, and the light's number
@@ -36,7 +42,7 @@ void pickForTile(Tile tile, uvec2 pixel, uint thread, uint turn) {
 #endif
   uvec4 bits = nextBits4(random);
   // One pick in each part of the table: together they have its distribution, with less chance in how often a light comes.
-  bits.x = (thread << MUTANT(34, 23u, 24u)) | (bits.x >> 8u);
+  bits.x = (thread << MUTANT(34, 31u - kPickBits, 32u - kPickBits)) | (bits.x >> kPickBits);
 #ifdef HAS_LIGHT_TREE
   const Pick pick = pickByPlace(tile.total, bits.xyz, random);
   if (!(pick.pdf > 0.0)) {
@@ -142,7 +148,7 @@ void run(uvec2 pixel) {
 #endif
   for (uint done = 0u, turn = 0u; done < all; done += kPicks, ++turn) {
     if (turn > 0u) barrier();
-    pickForTile(tile, pixel, thread, turn);
+    if (thread < kPicks) pickForTile(tile, pixel, thread, turn);
     barrier();
     const uint begin = MUTANT(36, 0u, pcg4d(uvec4(number, frameIndex, frameSeed ^ launchStream, turn)).x >> 24u);
     if (lit) lookThrough(selections, tile, surface, min(all - done, kPicks), begin, random);

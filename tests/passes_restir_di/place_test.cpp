@@ -175,8 +175,8 @@ TEST(RestirPlace, WeighsOneOverTheProbability) {
 }
 
 /// How often lights came up by themselves, and how often their probabilities say, in `groups` groups of lights whose
-/// numbers are alike.
-double chanceOfPicks(const scene::Scene& scene, size_t groups, uint32_t frames) {
+/// numbers are alike. Up to `mostUnlit` of them may show nothing, as a tilted lamp does to who stands beside it.
+double chanceOfPicks(const scene::Scene& scene, size_t groups, uint32_t frames, uint32_t mostUnlit) {
   constexpr uint32_t kSide = 64;
   const View view = planeView(kSide, kSide, frontCamera());
   PassTest t("restir_di.Initial");
@@ -191,6 +191,7 @@ double chanceOfPicks(const scene::Scene& scene, size_t groups, uint32_t frames) 
     for (size_t i = 0; i < p.size(); ++i) expected[i % groups] += p[i] / static_cast<double>(boxes.size());
   }
   std::vector<uint64_t> counts(expected.size(), 0);
+  uint32_t unlit = 0;
   for (uint32_t frame = 0; frame < frames; ++frame) {
     t.run();
     const std::vector<Reservoir> out = t.output<Reservoir>("reservoirs");
@@ -198,10 +199,13 @@ double chanceOfPicks(const scene::Scene& scene, size_t groups, uint32_t frames) 
       const uint32_t at = hashOf(frame * 64 + tile) % (kTile * kTile);
       const uint32_t x = tile % 4 * kTile + at % kTile, y = tile / 4 * kTile + at / kTile;
       const Reservoir& r = out[y * kSide + x];
-      EXPECT_GT(r.weight, 0.0f) << "every light lights every pixel";
-      if (r.weight > 0.0f) ++counts[lightOf(r) % groups];
+      if (r.weight > 0.0f)
+        ++counts[lightOf(r) % groups];
+      else
+        ++unlit;
     }
   }
+  EXPECT_LE(unlit, mostUnlit);
   return chiSquareP(counts, expected);
 }
 
@@ -210,10 +214,10 @@ double chanceOfPicks(const scene::Scene& scene, size_t groups, uint32_t frames) 
 TEST(RestirPlace, PicksFollowTheirProbabilities) {
   scene::Scene mixture = cloud(70, true);
   addSun(mixture);
-  EXPECT_GT(chanceOfPicks(cloud(70, false), 70, 250), 1e-4);
-  EXPECT_GT(chanceOfPicks(mixture, 100, 250), 1e-4);
+  EXPECT_GT(chanceOfPicks(cloud(70, false), 70, 250, 0), 1e-4);
+  EXPECT_GT(chanceOfPicks(mixture, 100, 250, 4), 1e-4);
   // With levels below the cut.
-  EXPECT_GT(chanceOfPicks(cloud(9000, false), 100, 250), 1e-4);
+  EXPECT_GT(chanceOfPicks(cloud(9000, false), 100, 250, 0), 1e-4);
 }
 
 // Nothing that a tile's surfaces can see is worth anything: no candidates, and no harm.
