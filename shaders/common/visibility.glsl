@@ -23,9 +23,10 @@ vec3 offSurface(Surface s, vec3 direction, float error) {
 // The start of a ray that leaves a surface.
 vec3 offsetOrigin(Surface s, vec3 direction) { return offSurface(s, direction, s.error + intersectionError()); }
 
-// The segment from the light's point to the surface; either end is moved towards the other by its own error, so that neither surface
+// The segment between the light's point and the surface; either end is moved towards the other by its own error, so that neither surface
 // blocks itself. Rays begin at the light because that is what many of them share: those of pixels around, and those that are sorted
-// (ray_order.glsl), go through the same boxes from the start, and a light behind a wall is found to be so at once.
+// (ray_order.glsl), go through the same boxes from the start. Only, the error at the far end grows with the way, and where
+// it would be much more than the surface's own, from lights far away, shadows of what is close would be lost: those rays begin at the surface.
 // `extent` is in units of `way`; nothing is left of a segment when it isn't positive.
 struct ShadowSegment {
   vec3 origin, way;
@@ -33,14 +34,16 @@ struct ShadowSegment {
 };
 
 ShadowSegment shadowSegment(Surface s, LightSample light) {
-  // What lies near the far end is met with an error that grows with the way, too.
-  const vec3 end = offSurface(s, light.direction, s.error + intersectionError() + kIntersectionError * distance(s.position, light.target));
-  const vec3 largest = max(abs(light.target), abs(end));
+  const float nearError = s.error + intersectionError(), farError = kIntersectionError * distance(s.position, light.target);
+  const bool fromLight = farError <= 16.0 * nearError;
+  const vec3 atSurface = offSurface(s, light.direction, nearError + (fromLight ? farError : 0.0));
+  const vec3 largest = max(abs(light.target), abs(atSurface));
   const float lightError = max(largest.x, max(largest.y, largest.z)) * (16.0 / 8388608.0) + intersectionError();
+  const vec3 whole = atSurface - light.target;
+  const float begin = lightError * inversesqrt(dot(whole, whole));
   ShadowSegment r;
-  r.way = end - light.target;
-  const float begin = lightError * inversesqrt(dot(r.way, r.way));
-  r.origin = light.target + begin * r.way;
+  r.origin = fromLight ? light.target + begin * whole : atSurface;
+  r.way = fromLight ? whole : -whole;
   r.extent = MUTANT(47, 0.5, 1.0) - begin;
   return r;
 }

@@ -136,6 +136,23 @@ TEST(Offset, LightsDoNotShadowTheirSamples) {
   }
 }
 
+// The error of a ray's far end grows with its length: from lights very far away it would be more than this gap.
+TEST(Offset, FarLightsDoNotReachIntoNarrowGaps) {
+  // A floor and a lid close over it, seen from between them.
+  Builder b;
+  b.add(quad({-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}));
+  b.add(quad({-3, 0.01f, -3}, {3, 0.01f, -3}, {3, 0.01f, 3}, {-3, 0.01f, 3}));
+  const scene::Camera camera = lookAt({0, 0.005f, 0}, {0.01f, 0, 0}, 60);
+  for (const float away : {10.0f, 1e3f, 1e5f, 1e7f}) {
+    SCOPED_TRACE(away);
+    scene::Scene scene = b.scene;
+    scene.lights.push_back({"point", scene::LightKind::Point, glm::vec3(1), away * glm::vec3(0.3f, 0.9f, -0.2f)});
+    const Rays rays = leave(scene, camera, "lights", 64, 16);
+    EXPECT_GE(rays.all, 20'000);
+    EXPECT_EQ(rays.wrong, rays.all) << "all of them should be hidden";
+  }
+}
+
 TEST(Offset, WallsWithoutThicknessDoNotLeak) {
   // A closed room of single quads, seen from within; targets lie outside.
   Builder b;
