@@ -26,7 +26,8 @@ vec3 offsetOrigin(Surface s, vec3 direction) { return offSurface(s, direction, s
 // The segment between the light's point and the surface; either end is moved towards the other by its own error, so that neither surface
 // blocks itself. Rays begin at the light because that is what many of them share: those of pixels around, and those that are sorted
 // (ray_order.glsl), go through the same boxes from the start. Only, the error at the far end grows with the way, and where
-// it would be much more than the surface's own, from lights far away, shadows of what is close would be lost: those rays begin at the surface.
+// it would be much more than the surface's own, from lights far away, shadows of what is close would be lost: those rays begin at the
+// surface.
 // `extent` is in units of `way`; nothing is left of a segment when it isn't positive.
 struct ShadowSegment {
   vec3 origin, way;
