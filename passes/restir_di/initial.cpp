@@ -36,7 +36,8 @@ void Initial::describe(PassDescription& d) {
   d.param("tiles", "auto")
       .oneOf({"auto", "on", "off"})
       .doc(
-          "Whether the pixels of a tile of 16 x 16 pick one light each and share all picks, whose cost hardly grows "
+          "Whether the pixels of a tile of 16 x 16 pick lights for all of them and share the picks, whose cost hardly "
+          "grows "
           "with the number of lights, or each pick all their candidates themselves; auto: where bsdfRays is 0, on");
   d.param("triangles", "solidAngle")
       .oneOf({"area", "solidAngle"})

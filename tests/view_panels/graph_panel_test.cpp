@@ -1,11 +1,6 @@
 // The graph panel, driven as a user drives it: mouse and keys go in, requests come out, and what they ask for is done.
-#include "view/panels/graph_panel.h"
+#include "desk.h"
 
-#include "view/document/edits.h"
-#include "view/document/model.h"
-
-#include <weir/core/error.h>
-#include <weir/graph/compile.h>
 #include <weir/pass/registry.h>
 
 #include <fmt/format.h>
@@ -20,75 +15,9 @@
 #include <vector>
 
 #include "support/device.h"
-#include "support/ui_robot.h"
 
 namespace weir::view::test {
 namespace {
-
-using weir::test::UiRobot;
-
-/// A document behind the panel, whose requests are carried out between two frames.
-class Desk {
- public:
-  Desk(Document document, const graph::PassCatalog& catalog, bool named = true)
-      : document_(std::move(document)), context_{catalog, 64, 64} {
-    rebuild();
-    robot = std::make_unique<UiRobot>([this](Ui& ui) { draw(ui); }, glm::vec2{1280.0f, 720.0f}, named);
-  }
-
-  Document& document() { return document_; }
-  const GraphModel& model() const { return model_; }
-  /// Requests of all frames since the last look.
-  std::vector<GraphRequests> take() { return std::exchange(asked_, {}); }
-  /// The only edit that was asked for since then.
-  template <typename T>
-  T only() {
-    std::vector<T> found;
-    for (const GraphRequests& requests : take())
-      for (const Edit& edit : requests.edits)
-        if (const T* e = std::get_if<T>(&edit)) found.push_back(*e);
-    EXPECT_EQ(found.size(), 1u);
-    return found.empty() ? T{} : found.front();
-  }
-  void rebuild() {
-    std::vector<graph::Diagnostic> findings;
-    graph::CompiledGraph compiled = graph::compile(document_.description(), context_.catalog, 64, 64, findings);
-    if (findings.empty()) running_ = std::move(compiled);
-    model_ = buildModel({document_, context_, &running_, problemsOf(findings), choicesOf_});
-  }
-
-  GraphPanelState state;
-  std::unique_ptr<UiRobot> robot;
-  bool carriesOut = true;
-
- private:
-  void draw(Ui& ui) {
-    ImGui::SetNextWindowPos({0.0f, 0.0f});
-    ImGui::SetNextWindowSize({340.0f, 720.0f});
-    ImGui::Begin("Graph", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar);
-    GraphRequests requests = drawGraphPanel(ui, model_, state);
-    ImGui::End();
-    if (!requests.choicesOf.empty()) choicesOf_ = requests.choicesOf;
-    if (!requests.show.empty()) state.shown = requests.show;
-    if (carriesOut)
-      for (const Edit& edit : requests.edits) {
-        try {
-          carryOut(document_, context_, edit);
-        } catch (const InputError& error) {
-          refused_ = error.what();
-        }
-      }
-    if (!requests.edits.empty() || !requests.choicesOf.empty()) rebuild();
-    asked_.push_back(std::move(requests));
-  }
-
-  Document document_;
-  SwapContext context_;
-  graph::CompiledGraph running_;
-  GraphModel model_;
-  std::string choicesOf_, refused_;
-  std::vector<GraphRequests> asked_;
-};
 
 class GraphPanel : public ::testing::Test {
  protected:
@@ -362,42 +291,6 @@ TEST_F(GraphPanel, LivesThroughAnything) {
     }
   }
   EXPECT_EQ(d.model().passes.size(), 6u);
-}
-
-/// Sixty passes, each reading several of the others, this frame's and last frame's: more than any window shows at once.
-TEST(GraphPanelCost, SixtyPassesTakeLessThanHalfAMillisecond) {
-  PassDescription pass;
-  pass.type = "t.Filter";
-  for (const char* name : {"color", "depth", "motion", "history"})
-    pass.input(name, storageImage(Format::RGBA32F)).optional();
-  for (const char* name : {"color", "variance", "moments"}) pass.output(name, storageImage(Format::RGBA32F));
-  for (int i = 0; i < 12; ++i) pass.param("param" + std::to_string(i), 0.5f).range(0, 1).unit("px").doc("What it does");
-  graph::PassCatalog catalog;
-  catalog.find = [&](const std::string& type) { return type == pass.type ? &pass : nullptr; };
-  catalog.types = [&] { return std::vector<std::string>{pass.type}; };
-  std::string passes = R"("p0": { "type": "t.Filter" })";
-  for (int i = 1; i < 60; ++i)
-    passes += fmt::format(R"(, "p{}": {{ "type": "t.Filter", "inputs": {{ "color": "p{}.color", "depth": "p{}.variance",
-                          "motion": "p{}.moments", "history": "p{}.color@previous" }} }})",
-                          i, i - 1, i / 2, i * 2 / 3, 59 - i);
-  Desk d(
-      Document::fromText(R"({ "version": 1, "passes": { )" + passes + R"( }, "outputs": { "c": "p59.color" } })", "g"),
-      catalog, false);
-  ASSERT_TRUE(d.model().problems.empty());
-  for (const PassModel& p : d.model().passes) d.state.gpuMs[p.name] = 0.123;
-  for (const char* open : {"", "p3"}) {
-    d.state.selected = open;
-    std::vector<double> seconds;
-    for (int i = 0; i < 300; ++i) {
-      d.robot->frame();
-      seconds.push_back(d.robot->seconds());
-    }
-    std::sort(seconds.begin(), seconds.end());
-    const double median = 1e3 * seconds[seconds.size() / 2];
-    std::printf("60 passes%s: %.3f ms a frame (median), %d triangles\n", *open ? ", one open" : "", median,
-                d.robot->triangles());
-    EXPECT_LT(median, 2.0);  // 0.5 ms is the aim; a busy or slow machine takes longer
-  }
 }
 
 }  // namespace
